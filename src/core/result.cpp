@@ -16,6 +16,7 @@ std::string_view name(ErrorCode code) {
     case ErrorCode::NoContext: return "NoContext";
     case ErrorCode::ShaderError: return "ShaderError";
     case ErrorCode::Unsupported: return "Unsupported";
+    case ErrorCode::Cancelled: return "Cancelled";
     }
     return "Unknown";
 }

@@ -25,6 +25,7 @@ enum class ErrorCode : std::uint8_t {
     NoContext,         ///< No GL context is current, or none could be created.
     ShaderError,       ///< A shader did not compile or a program did not link.
     Unsupported,       ///< No implementation serves this combination of requests.
+    Cancelled,         ///< The caller's progress callback asked to stop.
 };
 
 /// The enumerator's name, e.g. "InvalidMesh".

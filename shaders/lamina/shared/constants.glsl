@@ -1,0 +1,33 @@
+// Numbers that GLSL and C++ must agree on. Valid in both languages; include it, never copy from it.
+#ifndef LAMINA_SHARED_CONSTANTS
+#define LAMINA_SHARED_CONSTANTS
+
+// Slices in one texture layer: the bits of a uvec4.
+#define LAMINA_SLICES_PER_GROUP 128
+
+// A depth fraction this close to a slice boundary counts as on it, so that rounding in the world
+// transform cannot move a face that lies on a boundary to the wrong side (2^-40).
+#define LAMINA_DEPTH_SNAP 9.094947017729282e-13
+
+// Perspective triangles are cut at this fraction of the near depth, in front of every slice.
+#define LAMINA_EYE_CUT 0.015625
+
+// Capacity of LaminaGridBlock.boundaries: slices + 1 of a grid whose slices are not linear.
+#define LAMINA_MAX_SLICE_BOUNDARIES 4032
+
+// LaminaGridConstants.size.w
+#define LAMINA_GRID_PERSPECTIVE 1u
+#define LAMINA_GRID_CUSTOM_SLICES 2u
+
+// LAMINA_COVERAGE
+#define LAMINA_COVERAGE_SAMPLED 0
+#define LAMINA_COVERAGE_FILLED 1
+
+// Vertex attribute locations of MeshView sources.
+#define LAMINA_ATTRIBUTE_POSITION 0
+
+// Uniform buffer binding of the voxelization passes.
+#define LAMINA_DRAW_BLOCK_BINDING 0
+#define LAMINA_PASS_GRID_BLOCK_BINDING 1
+
+#endif

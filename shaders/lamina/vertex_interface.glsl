@@ -1,0 +1,8 @@
+// What a source's vertex stage gives to every raster backend.
+// A DrawSource supplies `LaminaVertex laminaVertex()`, with whatever inputs, uniforms and buffers it
+// needs; Lamina supplies main().
+struct LaminaVertex {
+    vec3 position; // World space (local space of the model matrix for a MeshView).
+    vec3 normal;   // World space; need not have unit length; zero if unknown.
+    uint material; // Index into the material table.
+};

@@ -1,0 +1,138 @@
+// Sets the bits of one column for one triangle; logic op OR gathers them ([ED06] 2.2).
+//
+// One invocation owns one (triangle, column) pair of one pass of 128 slices:
+//   1. reject columns whose centre the triangle does not own;
+//   2. Sampled: the slice of the triangle's depth at the centre;
+//      Filled: the slices between the least and the greatest depth of the part of the triangle in
+//      the column's square, found as the extremes of an affine function over a convex polygon;
+//   3. write their bits of this pass.
+// permute LAMINA_COVERAGE = LAMINA_COVERAGE_SAMPLED LAMINA_COVERAGE_FILLED
+#include <voxelize/draw_block.glsl>
+#include <voxelize/column_triangle.glsl>
+
+layout(std140, binding = LAMINA_PASS_GRID_BLOCK_BINDING) uniform LaminaPassGridBlock {
+    LaminaGridConstants constants;
+    vec4 boundaries[LAMINA_MAX_SLICE_BOUNDARIES / 4];
+} laminaPassGrid;
+
+#include <lamina/slice_distribution.glsl>
+
+layout(location = 0) flat in dvec4 laminaEdge0;
+layout(location = 2) flat in dvec4 laminaEdge1;
+layout(location = 4) flat in dvec4 laminaEdge2;
+layout(location = 6) flat in dvec3 laminaDepthPlane;
+layout(location = 8) flat in dvec2 laminaDepthRange;
+
+layout(location = 0) out uvec4 laminaBits;
+
+// Bits [first, last] of the pass's 128; first and last may lie outside.
+uvec4 bitRange(int first, int last) {
+    ivec4 low = clamp(ivec4(first) - ivec4(0, 32, 64, 96), ivec4(0), ivec4(32));
+    ivec4 high = clamp(ivec4(last + 1) - ivec4(0, 32, 64, 96), ivec4(0), ivec4(32));
+    uvec4 belowLow = mix((uvec4(1u) << uvec4(low & 31)) - 1u, uvec4(0xffffffffu), equal(low, ivec4(32)));
+    uvec4 belowHigh = mix((uvec4(1u) << uvec4(high & 31)) - 1u, uvec4(0xffffffffu), equal(high, ivec4(32)));
+    return belowHigh & ~belowLow;
+}
+
+#if LAMINA_COVERAGE == LAMINA_COVERAGE_FILLED
+// The square is taken this much larger, in columns, to absorb the rounding of the float arithmetic.
+const float kFootprintAllowance = 1.0 / 131072.0;
+const float kHalfColumn = 0.5 + kFootprintAllowance;
+
+// Least and greatest value of dot(gradient, offset) over the part of the triangle in the column's
+// square; offsets are from the column's centre, which the triangle owns.
+vec2 extremesInColumn(LaminaColumnTriangle triangle, dvec2 center, vec2 gradient) {
+    // Half-planes dot(normal, offset) + distance >= 0.
+    vec3 halfPlanes[3];
+    for (int i = 0; i < 3; ++i) {
+        vec2 direction = vec2(triangle.edges[i].zw);
+        float size = length(direction);
+        halfPlanes[i] = size > 0.0 ? vec3(vec2(-direction.y, direction.x) / size,
+                                          float(laminaEdgeValue(triangle.edges[i], center) / double(size)))
+                                   : vec3(0.0, 0.0, 2.0);
+    }
+    vec2 range = vec2(0.0);
+    for (int corner = 0; corner < 4; ++corner) {
+        vec2 offset = vec2((corner & 1) != 0 ? kHalfColumn : -kHalfColumn, (corner & 2) != 0 ? kHalfColumn : -kHalfColumn);
+        bool isInside = true;
+        for (int i = 0; i < 3; ++i)
+            isInside = isInside && dot(halfPlanes[i].xy, offset) + halfPlanes[i].z >= 0.0;
+        if (isInside) {
+            float value = dot(gradient, offset);
+            range = vec2(min(range.x, value), max(range.y, value));
+        }
+    }
+    for (int i = 0; i < 3; ++i) {
+        // Points on edge i: origin + s * along.
+        vec2 normal = halfPlanes[i].xy;
+        float distance = halfPlanes[i].z;
+        if (abs(distance) > 1.0)
+            continue;
+        vec2 origin = -distance * normal;
+        vec2 along = vec2(-normal.y, normal.x);
+        float low = -2.0;
+        float high = 2.0;
+        for (int axis = 0; axis < 2; ++axis) {
+            if (abs(along[axis]) > 1.0e-12) {
+                float a = (-kHalfColumn - origin[axis]) / along[axis];
+                float b = (kHalfColumn - origin[axis]) / along[axis];
+                low = max(low, min(a, b));
+                high = min(high, max(a, b));
+            } else if (abs(origin[axis]) > kHalfColumn) {
+                high = -3.0;
+            }
+        }
+        for (int other = 1; other < 3; ++other) {
+            vec3 plane = halfPlanes[(i + other) % 3];
+            float slope = dot(plane.xy, along);
+            float value = dot(plane.xy, origin) + plane.z;
+            if (abs(slope) > 1.0e-12) {
+                float s = -value / slope;
+                low = slope > 0.0 ? max(low, s) : low;
+                high = slope > 0.0 ? high : min(high, s);
+            } else if (value < -kFootprintAllowance) {
+                high = -3.0;
+            }
+        }
+        if (low <= high + kFootprintAllowance) {
+            float a = dot(gradient, origin + low * along);
+            float b = dot(gradient, origin + high * along);
+            range = vec2(min(range.x, min(a, b)), max(range.y, max(a, b)));
+        }
+    }
+    return range;
+}
+#endif
+
+void main() {
+    LaminaColumnTriangle triangle =
+        LaminaColumnTriangle(dvec4[3](laminaEdge0, laminaEdge1, laminaEdge2), laminaDepthPlane, laminaDepthRange);
+    dvec2 center = dvec2(gl_FragCoord.xy);
+    if (!laminaOwnsPoint(triangle, center))
+        discard;
+
+    bool isPerspective = (laminaDraw.size.w & LAMINA_GRID_PERSPECTIVE) != 0u;
+    int firstSlice = int(laminaDraw.pass.x);
+    double value = laminaPlaneValue(triangle, center);
+#if LAMINA_COVERAGE == LAMINA_COVERAGE_SAMPLED
+    int slice = laminaSliceAt(isPerspective ? 1.0lf / value : value, laminaDraw);
+    laminaBits = slice < 0 ? uvec4(0u) : bitRange(slice - firstSlice, slice - firstSlice);
+#else
+    vec2 gradient = vec2(triangle.depthPlane.xy);
+    vec2 extremes = extremesInColumn(triangle, center, gradient);
+    // Relative allowance for the float products above; zero for triangles that face the grid's camera.
+    float allowance = (abs(gradient.x) + abs(gradient.y)) * kFootprintAllowance;
+    dvec2 range = value + dvec2(extremes.x - allowance, extremes.y + allowance);
+    if (isPerspective)
+        range = dvec2(1.0lf / range.y, range.x > 0.0lf ? 1.0lf / range.x : triangle.depthRange.y);
+    double near = laminaDraw.depthRange.x;
+    double far = near + 1.0lf / laminaDraw.depthRange.y;
+    range = clamp(range, dvec2(triangle.depthRange.x), dvec2(triangle.depthRange.y));
+    laminaBits = uvec4(0u);
+    double rounding = LAMINA_DEPTH_SNAP / laminaDraw.depthRange.y;
+    if (range.y >= near - rounding && range.x <= far + rounding) {
+        range = clamp(range, dvec2(near), dvec2(far));
+        laminaBits = bitRange(laminaSliceAt(range.x, laminaDraw) - firstSlice, laminaSliceAt(range.y, laminaDraw) - firstSlice);
+    }
+#endif
+}

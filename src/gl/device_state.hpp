@@ -1,0 +1,45 @@
+#pragma once
+
+#include "gl/objects.hpp"
+
+#include <lamina/gl/device.hpp>
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lamina::gl {
+
+/// What a Device and the objects made from it share.
+struct DeviceState {
+    GladGLContext gl{};
+    DeviceDesc desc;
+    DeviceInfo info;
+    DeviceLimits limits;
+    std::uint64_t allocatedBytes = 0;
+    /// Linked programs by everything that went into them (program_cache.hpp). Holds raw names, since
+    /// owning handles would keep this state alive; ~Device deletes them.
+    std::map<std::string, GLuint, std::less<>> programs;
+
+    void say(MessageSeverity severity, const std::string& text) const {
+        if (desc.message)
+            desc.message({severity, text});
+    }
+};
+
+/// Puts the GL work of a scope under a KHR_debug group, for captures and debug output.
+class DebugGroup {
+public:
+    LAMINA_API DebugGroup(DeviceState& device, std::string_view name);
+    LAMINA_API ~DebugGroup();
+    DebugGroup(const DebugGroup&) = delete;
+    DebugGroup& operator=(const DebugGroup&) = delete;
+
+private:
+    DeviceState& mDevice;
+    bool mPushed = false;
+};
+
+} // namespace lamina::gl

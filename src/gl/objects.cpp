@@ -1,0 +1,142 @@
+#include "gl/objects.hpp"
+
+#include "gl/device_state.hpp"
+
+#include <string>
+
+namespace lamina::gl {
+namespace detail {
+namespace {
+
+GLenum identifier(ObjectKind kind) {
+    switch (kind) {
+    case ObjectKind::Buffer: return GL_BUFFER;
+    case ObjectKind::Texture: return GL_TEXTURE;
+    case ObjectKind::Framebuffer: return GL_FRAMEBUFFER;
+    case ObjectKind::VertexArray: return GL_VERTEX_ARRAY;
+    case ObjectKind::Program: return GL_PROGRAM;
+    case ObjectKind::Query: return GL_QUERY;
+    }
+    return GL_NONE;
+}
+
+} // namespace
+
+GLuint createObject(DeviceState& device, ObjectKind kind, GLenum target) {
+    GLuint id = 0;
+    switch (kind) {
+    case ObjectKind::Buffer: device.gl.CreateBuffers(1, &id); break;
+    case ObjectKind::Texture: device.gl.CreateTextures(target, 1, &id); break;
+    case ObjectKind::Framebuffer: device.gl.CreateFramebuffers(1, &id); break;
+    case ObjectKind::VertexArray: device.gl.CreateVertexArrays(1, &id); break;
+    case ObjectKind::Program: id = device.gl.CreateProgram(); break;
+    case ObjectKind::Query: device.gl.CreateQueries(target, 1, &id); break;
+    }
+    return id;
+}
+
+void destroyObject(DeviceState& device, ObjectKind kind, GLuint id, std::uint64_t bytes) {
+    device.allocatedBytes -= bytes;
+    switch (kind) {
+    case ObjectKind::Buffer: device.gl.DeleteBuffers(1, &id); break;
+    case ObjectKind::Texture: device.gl.DeleteTextures(1, &id); break;
+    case ObjectKind::Framebuffer: device.gl.DeleteFramebuffers(1, &id); break;
+    case ObjectKind::VertexArray: device.gl.DeleteVertexArrays(1, &id); break;
+    case ObjectKind::Program: device.gl.DeleteProgram(id); break;
+    case ObjectKind::Query: device.gl.DeleteQueries(1, &id); break;
+    }
+}
+
+void labelObject(DeviceState& device, ObjectKind kind, GLuint id, std::string_view label) {
+    device.gl.ObjectLabel(identifier(kind), id, static_cast<GLsizei>(label.size()), label.data());
+}
+
+} // namespace detail
+
+namespace {
+
+std::string mebibytes(std::uint64_t bytes) {
+    constexpr std::uint64_t kMebibyte = 1u << 20;
+    if (bytes < kMebibyte)
+        return std::to_string(bytes) + " bytes";
+    return std::to_string((bytes + kMebibyte - 1) / kMebibyte) + " MiB";
+}
+
+Result<void> checkBudget(const DeviceState& device, std::uint64_t bytes,
+                         std::string_view operation) {
+    const std::uint64_t budget = device.desc.memoryBudgetBytes;
+    if (budget != 0 && (bytes > budget || device.allocatedBytes > budget - bytes))
+        return Error{ErrorCode::OutOfMemory,
+                     std::string(operation) + ": needs " + mebibytes(bytes) + ", the memory budget of " +
+                         mebibytes(budget) + " has " +
+                         mebibytes(budget > device.allocatedBytes ? budget - device.allocatedBytes : 0) +
+                         " left; raise the budget or use fewer voxels"};
+    return {};
+}
+
+/// Runs an allocation and tells whether the device had the memory. Errors the host left pending
+/// would be mistaken for ours, so they are taken off the queue and reported first.
+template<class Allocate>
+Result<void> allocate(DeviceState& device, std::uint64_t bytes, std::string_view operation,
+                      Allocate&& run) {
+    if (const GLenum pending = device.gl.GetError(); pending != GL_NO_ERROR)
+        device.say(MessageSeverity::Warning, std::string(operation) + ": the host left GL error " +
+                                                 std::to_string(pending) + " pending; it is cleared");
+    run();
+    if (const GLenum error = device.gl.GetError(); error != GL_NO_ERROR)
+        return Error{ErrorCode::OutOfMemory, std::string(operation) + ": the device could not give " +
+                                                 mebibytes(bytes) + " (GL error " +
+                                                 std::to_string(error) + "); use fewer voxels"};
+    device.allocatedBytes += bytes;
+    return {};
+}
+
+} // namespace
+
+Result<Buffer> createBuffer(const std::shared_ptr<DeviceState>& device, std::uint64_t bytes,
+                            const void* data, GLbitfield storageFlags, std::string_view operation,
+                            std::string_view label) {
+    if (auto fits = checkBudget(*device, bytes, operation); !fits)
+        return fits.error();
+    Buffer buffer = Buffer::create(device, label);
+    const auto stored = allocate(*device, bytes, operation, [&] {
+        device->gl.NamedBufferStorage(buffer.id(), static_cast<GLsizeiptr>(bytes), data, storageFlags);
+    });
+    if (!stored)
+        return stored.error();
+    buffer.setBytes(bytes);
+    return buffer;
+}
+
+Result<Texture> createTextureArray(const std::shared_ptr<DeviceState>& device,
+                                   GLenum internalFormat, std::uint32_t bytesPerTexel,
+                                   std::uint32_t width, std::uint32_t height, std::uint32_t layers,
+                                   std::string_view operation, std::string_view label) {
+    const DeviceLimits& limits = device->limits;
+    if (width > limits.maxTextureSize || height > limits.maxTextureSize ||
+        layers > limits.maxArrayTextureLayers)
+        return Error{ErrorCode::DeviceLimit,
+                     std::string(operation) + ": needs a texture of " + std::to_string(width) + " x " +
+                         std::to_string(height) + " x " + std::to_string(layers) +
+                         " layers, the device's limit is " + std::to_string(limits.maxTextureSize) +
+                         " x " + std::to_string(limits.maxTextureSize) + " x " +
+                         std::to_string(limits.maxArrayTextureLayers) + "; use a smaller grid"};
+    const std::uint64_t bytes = std::uint64_t{bytesPerTexel} * width * height * layers;
+    if (auto fits = checkBudget(*device, bytes, operation); !fits)
+        return fits.error();
+    Texture texture = Texture::create(device, label, GL_TEXTURE_2D_ARRAY);
+    const auto stored = allocate(*device, bytes, operation, [&] {
+        device->gl.TextureStorage3D(texture.id(), 1, internalFormat, static_cast<GLsizei>(width),
+                                    static_cast<GLsizei>(height), static_cast<GLsizei>(layers));
+    });
+    if (!stored)
+        return stored.error();
+    texture.setBytes(bytes);
+    device->gl.TextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    device->gl.TextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    device->gl.TextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    device->gl.TextureParameteri(texture.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return texture;
+}
+
+} // namespace lamina::gl

@@ -1,0 +1,5 @@
+#include <lamina/inner.glsl>
+
+float outer(float x) {
+    return broken(x);
+}
