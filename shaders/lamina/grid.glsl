@@ -1,6 +1,6 @@
 // Queries over voxel grids, for every shader stage of an engine.
 //
-//   #define LAMINA_GRID_COUNT 2            // grids in use (default 1)
+//   #define LAMINA_GRID_COUNT 2            // grids in use, 1 (default) to 8
 //   #define LAMINA_GRID_BLOCK_BINDING 3    // uniform buffers 3, 4 (default 0)
 //   #define LAMINA_GRID_TEXTURE_UNIT 5     // texture units 5, 6 (default 0)
 //   #include <lamina/grid.glsl>
@@ -72,6 +72,43 @@ vec3 laminaWorldToGrid(int grid, vec3 world, out bool inside) {
     return vec3(column, laminaSliceCoordinate(grid, depth));
 }
 
+// One texel of a grid's texture. The sampler is chosen by comparisons: llvmpipe (Mesa 22.3) changes
+// bits of integer texels, where they form a signalling NaN, fetched by a dynamic sampler index.
+uvec4 laminaFetchWord(int grid, ivec3 texel) {
+#if LAMINA_GRID_COUNT > 8
+#error "lamina/grid.glsl: LAMINA_GRID_COUNT is at most 8"
+#endif
+#if LAMINA_GRID_COUNT > 7
+    if (grid == 7)
+        return texelFetch(laminaGridWords[7], texel, 0);
+#endif
+#if LAMINA_GRID_COUNT > 6
+    if (grid == 6)
+        return texelFetch(laminaGridWords[6], texel, 0);
+#endif
+#if LAMINA_GRID_COUNT > 5
+    if (grid == 5)
+        return texelFetch(laminaGridWords[5], texel, 0);
+#endif
+#if LAMINA_GRID_COUNT > 4
+    if (grid == 4)
+        return texelFetch(laminaGridWords[4], texel, 0);
+#endif
+#if LAMINA_GRID_COUNT > 3
+    if (grid == 3)
+        return texelFetch(laminaGridWords[3], texel, 0);
+#endif
+#if LAMINA_GRID_COUNT > 2
+    if (grid == 2)
+        return texelFetch(laminaGridWords[2], texel, 0);
+#endif
+#if LAMINA_GRID_COUNT > 1
+    if (grid == 1)
+        return texelFetch(laminaGridWords[1], texel, 0);
+#endif
+    return texelFetch(laminaGridWords[0], texel, 0);
+}
+
 // The 128 bits of slices [128 group, 128 group + 128) of a column: bit (k & 31) of component
 // (k >> 5) & 3 is slice k. Zero outside the grid.
 uvec4 laminaColumnBits(int grid, ivec2 column, int group) {
@@ -79,7 +116,7 @@ uvec4 laminaColumnBits(int grid, ivec2 column, int group) {
     if (any(lessThan(column, ivec2(0))) || any(greaterThanEqual(column, ivec2(size.xy))) || group < 0 ||
         group * LAMINA_SLICES_PER_GROUP >= int(size.z))
         return uvec4(0u);
-    return texelFetch(laminaGridWords[grid], ivec3(column, group), 0);
+    return laminaFetchWord(grid, ivec3(column, group));
 }
 
 // A mask of the bits below `bit` in a 128-bit word; all of them from 128 on, none up to 0.

@@ -40,38 +40,35 @@ const float kFootprintAllowance = 1.0 / 131072.0;
 const float kHalfColumn = 0.5 + kFootprintAllowance;
 
 // Least and greatest value of dot(gradient, offset) over the part of the triangle in the column's
-// square; offsets are from the column's centre, which the triangle owns.
+// square; offsets are from the column's centre, which the triangle owns. The part is convex: its
+// vertices are the square's corners inside the triangle and the ends of the edges' parts in the square.
 vec2 extremesInColumn(LaminaColumnTriangle triangle, dvec2 center, vec2 gradient) {
-    // Half-planes dot(normal, offset) + distance >= 0.
-    vec3 halfPlanes[3];
-    for (int i = 0; i < 3; ++i) {
-        vec2 direction = vec2(triangle.edges[i].zw);
-        float size = length(direction);
-        halfPlanes[i] = size > 0.0 ? vec3(vec2(-direction.y, direction.x) / size,
-                                          float(laminaEdgeValue(triangle.edges[i], center) / double(size)))
-                                   : vec3(0.0, 0.0, 2.0);
-    }
     vec2 range = vec2(0.0);
-    for (int corner = 0; corner < 4; ++corner) {
-        vec2 offset = vec2((corner & 1) != 0 ? kHalfColumn : -kHalfColumn, (corner & 2) != 0 ? kHalfColumn : -kHalfColumn);
-        bool isInside = true;
-        for (int i = 0; i < 3; ++i)
-            isInside = isInside && dot(halfPlanes[i].xy, offset) + halfPlanes[i].z >= 0.0;
-        if (isInside) {
-            float value = dot(gradient, offset);
-            range = vec2(min(range.x, value), max(range.y, value));
-        }
-    }
+    bvec4 cornerIsInside = bvec4(true);
+    const vec4 cornerX = vec4(-kHalfColumn, kHalfColumn, -kHalfColumn, kHalfColumn);
+    const vec4 cornerY = vec4(-kHalfColumn, -kHalfColumn, kHalfColumn, kHalfColumn);
     for (int i = 0; i < 3; ++i) {
-        // Points on edge i: origin + s * along.
-        vec2 normal = halfPlanes[i].xy;
-        float distance = halfPlanes[i].z;
-        if (abs(distance) > 1.0)
+        dvec4 edge = triangle.edges[i];
+        vec2 direction = vec2(edge.zw);
+        float size = length(direction);
+        if (size == 0.0)
             continue;
+        vec2 along = direction / size;
+        vec2 normal = vec2(-along.y, along.x);
+        float distance = float(laminaEdgeValue(edge, center) / double(size));
+        vec4 cornerDistances = normal.x * cornerX + normal.y * cornerY + distance;
+        cornerIsInside = bvec4(ivec4(cornerIsInside) * ivec4(greaterThanEqual(cornerDistances, vec4(0.0))));
+        if (distance > 1.0)
+            continue;
+        // The edge's points are origin + s * along, for s between its two ends. Each end is taken from
+        // its own coordinates: near the column, where it matters, the difference is small and exact.
         vec2 origin = -distance * normal;
-        vec2 along = vec2(-normal.y, normal.x);
-        float low = -2.0;
-        float high = 2.0;
+        bool isAscending = edge.z > 0.0lf || (edge.z == 0.0lf && edge.w > 0.0lf);
+        dvec2 anchor = edge.xy - center;
+        dvec2 otherEnd = isAscending ? anchor + edge.zw : anchor - edge.zw;
+        vec2 ends = vec2(dot(vec2(anchor), along), dot(vec2(otherEnd), along));
+        float low = max(min(ends.x, ends.y), -2.0);
+        float high = min(max(ends.x, ends.y), 2.0);
         for (int axis = 0; axis < 2; ++axis) {
             if (abs(along[axis]) > 1.0e-12) {
                 float a = (-kHalfColumn - origin[axis]) / along[axis];
@@ -82,24 +79,16 @@ vec2 extremesInColumn(LaminaColumnTriangle triangle, dvec2 center, vec2 gradient
                 high = -3.0;
             }
         }
-        for (int other = 1; other < 3; ++other) {
-            vec3 plane = halfPlanes[(i + other) % 3];
-            float slope = dot(plane.xy, along);
-            float value = dot(plane.xy, origin) + plane.z;
-            if (abs(slope) > 1.0e-12) {
-                float s = -value / slope;
-                low = slope > 0.0 ? max(low, s) : low;
-                high = slope > 0.0 ? high : min(high, s);
-            } else if (value < -kFootprintAllowance) {
-                high = -3.0;
-            }
-        }
-        if (low <= high + kFootprintAllowance) {
+        if (low <= high) {
             float a = dot(gradient, origin + low * along);
             float b = dot(gradient, origin + high * along);
             range = vec2(min(range.x, min(a, b)), max(range.y, max(a, b)));
         }
     }
+    vec4 cornerValues = gradient.x * cornerX + gradient.y * cornerY;
+    for (int corner = 0; corner < 4; ++corner)
+        if (cornerIsInside[corner])
+            range = vec2(min(range.x, cornerValues[corner]), max(range.y, cornerValues[corner]));
     return range;
 }
 #endif

@@ -21,16 +21,16 @@ Result<void> validate(const TriangleMesh& mesh) {
     if (mesh.triangles.empty())
         return invalid("expected at least one triangle, found none");
     if (!mesh.normals.empty() && mesh.normals.size() != vertexCount)
-        return invalid("expected one normal a vertex (" + std::to_string(vertexCount) + "), found " +
-                       std::to_string(mesh.normals.size()));
+        return invalid("expected one normal a vertex (" + std::to_string(vertexCount) +
+                       "), found " + std::to_string(mesh.normals.size()));
     if (!mesh.colors.empty() && mesh.colors.size() != vertexCount)
-        return invalid("expected one colour a vertex (" + std::to_string(vertexCount) + "), found " +
-                       std::to_string(mesh.colors.size()));
+        return invalid("expected one colour a vertex (" + std::to_string(vertexCount) +
+                       "), found " + std::to_string(mesh.colors.size()));
     for (std::size_t i = 0; i < vertexCount; ++i) {
         const glm::vec3& p = mesh.positions[i];
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            return invalid("expected finite positions, found vertex " + std::to_string(i) + " at (" +
-                           std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
+            return invalid("expected finite positions, found vertex " + std::to_string(i) +
+                           " at (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
                            std::to_string(p.z) + "); remove or repair it");
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)

@@ -44,9 +44,8 @@ bool rasterizesOnCpu(std::string renderer) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     constexpr std::array kSoftware = {"llvmpipe", "softpipe", "swrast", "swiftshader",
                                       "software rasterizer"};
-    return std::any_of(kSoftware.begin(), kSoftware.end(), [&](const char* name) {
-        return renderer.find(name) != std::string::npos;
-    });
+    return std::any_of(kSoftware.begin(), kSoftware.end(),
+                       [&](const char* name) { return renderer.find(name) != std::string::npos; });
 }
 
 GLADapiproc loadThrough(void* user, const char* name) {
@@ -55,7 +54,8 @@ GLADapiproc loadThrough(void* user, const char* name) {
 
 } // namespace
 
-DebugGroup::DebugGroup(DeviceState& device, std::string_view name) : mDevice(device) {
+DebugGroup::DebugGroup(DeviceState& device, std::string_view name)
+    : mDevice(device) {
     // A host that has filled the group stack must not get an overflow error from us.
     GLint depth = 0;
     GLint maxDepth = 0;
@@ -79,9 +79,10 @@ Result<Device> Device::fromCurrentContext(const GetProcAddress& load, const Devi
     GetProcAddress loader = load;
     // glad asks glGetString for the version first: without a context that yields nothing.
     if (laminaGladLoadContextUserPtr(&state->gl, gl::loadThrough, &loader) == 0)
-        return Error{ErrorCode::NoContext,
-                     "device: expected a GL context current on this thread, found none (or the loader "
-                     "knows no GL functions); make the context current first"};
+        return Error{
+            ErrorCode::NoContext,
+            "device: expected a GL context current on this thread, found none (or the loader "
+            "knows no GL functions); make the context current first"};
     DeviceInfo& info = state->info;
     info.vendor = gl::text(state->gl, GL_VENDOR);
     info.renderer = gl::text(state->gl, GL_RENDERER);
@@ -99,7 +100,8 @@ Result<Device> Device::fromCurrentContext(const GetProcAddress& load, const Devi
     return Device(std::move(state));
 }
 
-Device::Device(std::shared_ptr<gl::DeviceState> state) : mState(std::move(state)) {}
+Device::Device(std::shared_ptr<gl::DeviceState> state)
+    : mState(std::move(state)) {}
 Device::Device(Device&&) noexcept = default;
 
 Device& Device::operator=(Device&& other) noexcept {
@@ -115,9 +117,17 @@ Device::~Device() {
     mState->programs.clear();
 }
 
-const DeviceInfo& Device::info() const { return mState->info; }
-const DeviceLimits& Device::limits() const { return mState->limits; }
-std::uint64_t Device::allocatedBytes() const { return mState->allocatedBytes; }
-void Device::setMemoryBudget(std::uint64_t bytes) { mState->desc.memoryBudgetBytes = bytes; }
+const DeviceInfo& Device::info() const {
+    return mState->info;
+}
+const DeviceLimits& Device::limits() const {
+    return mState->limits;
+}
+std::uint64_t Device::allocatedBytes() const {
+    return mState->allocatedBytes;
+}
+void Device::setMemoryBudget(std::uint64_t bytes) {
+    mState->desc.memoryBudgetBytes = bytes;
+}
 
 } // namespace lamina

@@ -19,8 +19,8 @@ struct DeviceState {
     DeviceInfo info;
     DeviceLimits limits;
     std::uint64_t allocatedBytes = 0;
-    /// Linked programs by everything that went into them (program_cache.hpp). Holds raw names, since
-    /// owning handles would keep this state alive; ~Device deletes them.
+    /// Linked programs by everything that went into them (program_cache.hpp). Holds raw names,
+    /// since owning handles would keep this state alive; ~Device deletes them.
     std::map<std::string, GLuint, std::less<>> programs;
 
     void say(MessageSeverity severity, const std::string& text) const {

@@ -10,12 +10,18 @@ namespace {
 
 GLenum identifier(ObjectKind kind) {
     switch (kind) {
-    case ObjectKind::Buffer: return GL_BUFFER;
-    case ObjectKind::Texture: return GL_TEXTURE;
-    case ObjectKind::Framebuffer: return GL_FRAMEBUFFER;
-    case ObjectKind::VertexArray: return GL_VERTEX_ARRAY;
-    case ObjectKind::Program: return GL_PROGRAM;
-    case ObjectKind::Query: return GL_QUERY;
+    case ObjectKind::Buffer:
+        return GL_BUFFER;
+    case ObjectKind::Texture:
+        return GL_TEXTURE;
+    case ObjectKind::Framebuffer:
+        return GL_FRAMEBUFFER;
+    case ObjectKind::VertexArray:
+        return GL_VERTEX_ARRAY;
+    case ObjectKind::Program:
+        return GL_PROGRAM;
+    case ObjectKind::Query:
+        return GL_QUERY;
     }
     return GL_NONE;
 }
@@ -25,12 +31,24 @@ GLenum identifier(ObjectKind kind) {
 GLuint createObject(DeviceState& device, ObjectKind kind, GLenum target) {
     GLuint id = 0;
     switch (kind) {
-    case ObjectKind::Buffer: device.gl.CreateBuffers(1, &id); break;
-    case ObjectKind::Texture: device.gl.CreateTextures(target, 1, &id); break;
-    case ObjectKind::Framebuffer: device.gl.CreateFramebuffers(1, &id); break;
-    case ObjectKind::VertexArray: device.gl.CreateVertexArrays(1, &id); break;
-    case ObjectKind::Program: id = device.gl.CreateProgram(); break;
-    case ObjectKind::Query: device.gl.CreateQueries(target, 1, &id); break;
+    case ObjectKind::Buffer:
+        device.gl.CreateBuffers(1, &id);
+        break;
+    case ObjectKind::Texture:
+        device.gl.CreateTextures(target, 1, &id);
+        break;
+    case ObjectKind::Framebuffer:
+        device.gl.CreateFramebuffers(1, &id);
+        break;
+    case ObjectKind::VertexArray:
+        device.gl.CreateVertexArrays(1, &id);
+        break;
+    case ObjectKind::Program:
+        id = device.gl.CreateProgram();
+        break;
+    case ObjectKind::Query:
+        device.gl.CreateQueries(target, 1, &id);
+        break;
     }
     return id;
 }
@@ -38,12 +56,24 @@ GLuint createObject(DeviceState& device, ObjectKind kind, GLenum target) {
 void destroyObject(DeviceState& device, ObjectKind kind, GLuint id, std::uint64_t bytes) {
     device.allocatedBytes -= bytes;
     switch (kind) {
-    case ObjectKind::Buffer: device.gl.DeleteBuffers(1, &id); break;
-    case ObjectKind::Texture: device.gl.DeleteTextures(1, &id); break;
-    case ObjectKind::Framebuffer: device.gl.DeleteFramebuffers(1, &id); break;
-    case ObjectKind::VertexArray: device.gl.DeleteVertexArrays(1, &id); break;
-    case ObjectKind::Program: device.gl.DeleteProgram(id); break;
-    case ObjectKind::Query: device.gl.DeleteQueries(1, &id); break;
+    case ObjectKind::Buffer:
+        device.gl.DeleteBuffers(1, &id);
+        break;
+    case ObjectKind::Texture:
+        device.gl.DeleteTextures(1, &id);
+        break;
+    case ObjectKind::Framebuffer:
+        device.gl.DeleteFramebuffers(1, &id);
+        break;
+    case ObjectKind::VertexArray:
+        device.gl.DeleteVertexArrays(1, &id);
+        break;
+    case ObjectKind::Program:
+        device.gl.DeleteProgram(id);
+        break;
+    case ObjectKind::Query:
+        device.gl.DeleteQueries(1, &id);
+        break;
     }
 }
 
@@ -66,11 +96,12 @@ Result<void> checkBudget(const DeviceState& device, std::uint64_t bytes,
                          std::string_view operation) {
     const std::uint64_t budget = device.desc.memoryBudgetBytes;
     if (budget != 0 && (bytes > budget || device.allocatedBytes > budget - bytes))
-        return Error{ErrorCode::OutOfMemory,
-                     std::string(operation) + ": needs " + mebibytes(bytes) + ", the memory budget of " +
-                         mebibytes(budget) + " has " +
-                         mebibytes(budget > device.allocatedBytes ? budget - device.allocatedBytes : 0) +
-                         " left; raise the budget or use fewer voxels"};
+        return Error{
+            ErrorCode::OutOfMemory,
+            std::string(operation) + ": needs " + mebibytes(bytes) + ", the memory budget of " +
+                mebibytes(budget) + " has " +
+                mebibytes(budget > device.allocatedBytes ? budget - device.allocatedBytes : 0) +
+                " left; raise the budget or use fewer voxels"};
     return {};
 }
 
@@ -81,12 +112,13 @@ Result<void> allocate(DeviceState& device, std::uint64_t bytes, std::string_view
                       Allocate&& run) {
     if (const GLenum pending = device.gl.GetError(); pending != GL_NO_ERROR)
         device.say(MessageSeverity::Warning, std::string(operation) + ": the host left GL error " +
-                                                 std::to_string(pending) + " pending; it is cleared");
+                                                 std::to_string(pending) +
+                                                 " pending; it is cleared");
     run();
     if (const GLenum error = device.gl.GetError(); error != GL_NO_ERROR)
-        return Error{ErrorCode::OutOfMemory, std::string(operation) + ": the device could not give " +
-                                                 mebibytes(bytes) + " (GL error " +
-                                                 std::to_string(error) + "); use fewer voxels"};
+        return Error{ErrorCode::OutOfMemory,
+                     std::string(operation) + ": the device could not give " + mebibytes(bytes) +
+                         " (GL error " + std::to_string(error) + "); use fewer voxels"};
     device.allocatedBytes += bytes;
     return {};
 }
@@ -100,7 +132,8 @@ Result<Buffer> createBuffer(const std::shared_ptr<DeviceState>& device, std::uin
         return fits.error();
     Buffer buffer = Buffer::create(device, label);
     const auto stored = allocate(*device, bytes, operation, [&] {
-        device->gl.NamedBufferStorage(buffer.id(), static_cast<GLsizeiptr>(bytes), data, storageFlags);
+        device->gl.NamedBufferStorage(buffer.id(), static_cast<GLsizeiptr>(bytes), data,
+                                      storageFlags);
     });
     if (!stored)
         return stored.error();
@@ -116,8 +149,8 @@ Result<Texture> createTextureArray(const std::shared_ptr<DeviceState>& device,
     if (width > limits.maxTextureSize || height > limits.maxTextureSize ||
         layers > limits.maxArrayTextureLayers)
         return Error{ErrorCode::DeviceLimit,
-                     std::string(operation) + ": needs a texture of " + std::to_string(width) + " x " +
-                         std::to_string(height) + " x " + std::to_string(layers) +
+                     std::string(operation) + ": needs a texture of " + std::to_string(width) +
+                         " x " + std::to_string(height) + " x " + std::to_string(layers) +
                          " layers, the device's limit is " + std::to_string(limits.maxTextureSize) +
                          " x " + std::to_string(limits.maxTextureSize) + " x " +
                          std::to_string(limits.maxArrayTextureLayers) + "; use a smaller grid"};

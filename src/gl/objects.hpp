@@ -20,7 +20,8 @@ enum class Ownership : std::uint8_t { Owned, Borrowed };
 namespace detail {
 LAMINA_API GLuint createObject(DeviceState& device, ObjectKind kind, GLenum textureTarget);
 LAMINA_API void destroyObject(DeviceState& device, ObjectKind kind, GLuint id, std::uint64_t bytes);
-LAMINA_API void labelObject(DeviceState& device, ObjectKind kind, GLuint id, std::string_view label);
+LAMINA_API void labelObject(DeviceState& device, ObjectKind kind, GLuint id,
+                            std::string_view label);
 } // namespace detail
 
 /// A GL object name, deleted with its owner. Move-only; a default-constructed one holds nothing.
@@ -101,11 +102,9 @@ using Query = Object<ObjectKind::Query>;
 /// A buffer with immutable storage of `bytes`, initialised from `data` unless null.
 /// storageFlags: as for glNamedBufferStorage. `operation` names the caller in errors.
 /// Errors: OutOfMemory (memory budget or device).
-[[nodiscard]] LAMINA_API Result<Buffer> createBuffer(const std::shared_ptr<DeviceState>& device,
-                                                     std::uint64_t bytes, const void* data,
-                                                     GLbitfield storageFlags,
-                                                     std::string_view operation,
-                                                     std::string_view label);
+[[nodiscard]] LAMINA_API Result<Buffer>
+createBuffer(const std::shared_ptr<DeviceState>& device, std::uint64_t bytes, const void* data,
+             GLbitfield storageFlags, std::string_view operation, std::string_view label);
 
 /// A one-level 2D array texture with nearest filtering. bytesPerTexel: of `internalFormat`.
 /// Errors: DeviceLimit, OutOfMemory.

@@ -40,8 +40,12 @@ std::string readLog(GLuint id, GetParameter getParameter, GetLog getLog) {
 
 class Shader {
 public:
-    Shader(const GladGLContext& gl, GLenum stage) : mGl(gl), mId(gl.CreateShader(stage)) {}
-    Shader(Shader&& other) noexcept : mGl(other.mGl), mId(std::exchange(other.mId, 0)) {}
+    Shader(const GladGLContext& gl, GLenum stage)
+        : mGl(gl)
+        , mId(gl.CreateShader(stage)) {}
+    Shader(Shader&& other) noexcept
+        : mGl(other.mGl)
+        , mId(std::exchange(other.mId, 0)) {}
     ~Shader() { mGl.DeleteShader(mId); }
     [[nodiscard]] GLuint id() const { return mId; }
 
@@ -56,7 +60,8 @@ Result<Shader> compile(DeviceState& device, const ProgramDesc& desc, const Progr
         return loaded.error();
     ShaderText text = std::move(*loaded);
     if (!stage.hostSource.empty()) {
-        text.text += "\n#line 1 " + std::to_string(text.files.size()) + "\n" + stage.hostSource + "\n";
+        text.text +=
+            "\n#line 1 " + std::to_string(text.files.size()) + "\n" + stage.hostSource + "\n";
         text.files.emplace_back("host vertex stage");
     }
     const std::string source = assemble(text, desc.defines);

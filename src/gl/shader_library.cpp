@@ -1,8 +1,19 @@
 #include "gl/shader_library.hpp"
 
+#include <lamina/gl/shaders.hpp>
+
 #include <algorithm>
 
-namespace lamina::gl {
+namespace lamina {
+
+Result<std::string> shaderSource(std::string_view name) {
+    auto shader = gl::loadShader(name);
+    if (!shader)
+        return shader.error();
+    return std::move(shader->text);
+}
+
+namespace gl {
 
 const EmbeddedShader* findEmbeddedShader(std::string_view name) {
     const std::span<const EmbeddedShader> all = embeddedShaders();
@@ -29,4 +40,5 @@ Result<ShaderText> loadShader(std::string_view name, const std::string& override
     return flattenShader(name, libraryReader(overrideDirectory));
 }
 
-} // namespace lamina::gl
+} // namespace gl
+} // namespace lamina

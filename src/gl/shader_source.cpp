@@ -255,7 +255,8 @@ private:
     }
 
     void writeLineDirective(std::size_t line, std::size_t file) {
-        mOut.text += "#line " + std::to_string(line) + " " + std::to_string(file) + "\n";
+        mOut.text += "#line " + std::to_string(file * kLinesPerSource + line) + " " +
+                     std::to_string(file) + "\n";
     }
 
     const ShaderReader& mRead;
@@ -304,7 +305,7 @@ bool take(std::string_view& text, std::string_view prefix) {
 }
 
 struct LogPlace {
-    std::size_t file;
+    std::size_t source;
     std::size_t line;
 };
 
@@ -337,10 +338,11 @@ std::string translateLine(std::string_view line, std::span<const std::string> fi
     else if (take(rest, "WARNING: "))
         severity = "warning: ";
     const std::optional<LogPlace> place = takePlace(rest);
-    if (!place || place->file >= files.size())
+    const std::string origin =
+        place ? describePlace(place->source, place->line, files) : std::string();
+    if (origin.empty())
         return std::string(line);
-    return files[place->file] + ":" + std::to_string(place->line) + ": " + severity +
-           std::string(rest);
+    return origin + ": " + severity + std::string(rest);
 }
 
 } // namespace
@@ -405,6 +407,14 @@ std::string assemble(const ShaderText& shader, std::span<const ShaderDefine> def
     for (const ShaderDefine& define : defines)
         text += "#define " + define.name + " " + define.value + "\n";
     return text + shader.text;
+}
+
+std::string describePlace(std::size_t source, std::size_t line,
+                          std::span<const std::string> files) {
+    const std::size_t file = line < kLinesPerSource ? source : line / kLinesPerSource;
+    if (file >= files.size())
+        return {};
+    return files[file] + ":" + std::to_string(line % kLinesPerSource);
 }
 
 std::string translateLog(std::string_view log, std::span<const std::string> files) {

@@ -14,11 +14,15 @@
 
 namespace lamina::gl {
 
-/// A shader with its includes in place. `#line N S` in `text` counts lines of `files[S]`.
+/// A shader with its includes in place. `#line` directives in `text` keep each line's origin: line
+/// N of `files[S]` has the number S * kLinesPerSource + N and the source number S. Both, because
+/// Mesa forgets the source number of most errors.
 struct ShaderText {
     std::string text;               ///< Without `#version`: assemble() writes it.
     std::vector<std::string> files; ///< Names under the shader root; [0] is the shader itself.
 };
+
+inline constexpr std::size_t kLinesPerSource = 100'000;
 
 /// `#define name value`.
 struct ShaderDefine {
@@ -62,9 +66,14 @@ expandPermutations(std::span<const PermutationAxis> axes);
 /// What a GL compiler is given: `#version 450 core`, the definitions, the text.
 [[nodiscard]] std::string assemble(const ShaderText& shader, std::span<const ShaderDefine> defines);
 
+/// "name:line" for the source and line number that a compiler reports of a flattened text; empty if
+/// they are not of it.
+[[nodiscard]] std::string describePlace(std::size_t source, std::size_t line,
+                                        std::span<const std::string> files);
+
 /// Rewrites the places in a compiler's log, "0:12(5): error: x" (Mesa), "0(12) : error C1: x"
 /// (NVIDIA), "ERROR: 0:12: x" (AMD, Intel, glslang), as "files[0]:12: error: x". Lines without a
-/// place, or with one that `files` does not hold, stay as they are.
+/// place, or with one that describePlace() does not know, stay as they are.
 [[nodiscard]] std::string translateLog(std::string_view log, std::span<const std::string> files);
 
 } // namespace lamina::gl

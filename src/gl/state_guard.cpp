@@ -12,8 +12,8 @@ constexpr std::array kDisabled = {
 };
 
 constexpr std::array kPackNames = {
-    GL_PACK_SWAP_BYTES,  GL_PACK_LSB_FIRST,   GL_PACK_ROW_LENGTH,  GL_PACK_IMAGE_HEIGHT,
-    GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS,   GL_PACK_SKIP_IMAGES, GL_PACK_ALIGNMENT,
+    GL_PACK_SWAP_BYTES,  GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH,  GL_PACK_IMAGE_HEIGHT,
+    GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_IMAGES, GL_PACK_ALIGNMENT,
 };
 
 constexpr std::array kUnpackNames = {
@@ -51,7 +51,8 @@ void restorePixelStore(const GladGLContext& gl, std::span<const int> names,
 
 } // namespace
 
-RasterStateGuard::RasterStateGuard(DeviceState& device, GLuint uniformBuffers) : mDevice(device) {
+RasterStateGuard::RasterStateGuard(DeviceState& device, GLuint uniformBuffers)
+    : mDevice(device) {
     const GladGLContext& gl = device.gl;
     for (const int capability : kDisabled) {
         const auto cap = static_cast<GLenum>(capability);
@@ -132,7 +133,8 @@ void RasterStateGuard::setHostPrimitiveRestart(bool asHost) {
     setEnabled(mDevice.gl, GL_PRIMITIVE_RESTART_FIXED_INDEX, asHost && mRestartFixed);
 }
 
-PixelPackGuard::PixelPackGuard(DeviceState& device) : mDevice(device) {
+PixelPackGuard::PixelPackGuard(DeviceState& device)
+    : mDevice(device) {
     mBuffer = integer(device.gl, GL_PIXEL_PACK_BUFFER_BINDING);
     device.gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     savePixelStore(device.gl, kPackNames, mValues);
@@ -143,7 +145,8 @@ PixelPackGuard::~PixelPackGuard() {
     mDevice.gl.BindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(mBuffer));
 }
 
-PixelUnpackGuard::PixelUnpackGuard(DeviceState& device) : mDevice(device) {
+PixelUnpackGuard::PixelUnpackGuard(DeviceState& device)
+    : mDevice(device) {
     mBuffer = integer(device.gl, GL_PIXEL_UNPACK_BUFFER_BINDING);
     device.gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     savePixelStore(device.gl, kUnpackNames, mValues);

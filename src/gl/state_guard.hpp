@@ -7,10 +7,11 @@
 
 namespace lamina::gl {
 
-/// Saves the GL state that a raster pass touches and puts it back when it goes out of scope. Between,
-/// the state is what a pass expects: no culling, no scissor, no logic op, all colours written, filled
-/// polygons, default clip control, no clip distances, no primitive restart, transform feedback paused.
-/// Passes draw to framebuffers without depth or stencil, where those tests never apply.
+/// Saves the GL state that a raster pass touches and puts it back when it goes out of scope.
+/// Between, the state is what a pass expects: no culling, no scissor, no logic op, all colours
+/// written, filled polygons, default clip control, no clip distances, no primitive restart,
+/// transform feedback paused. Passes draw to framebuffers without depth or stencil, where those
+/// tests never apply.
 class RasterStateGuard {
 public:
     /// uniformBuffers: uniform buffer bindings [0, uniformBuffers) that the pass rebinds.

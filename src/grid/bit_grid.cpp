@@ -29,10 +29,9 @@ bool BitGrid::at(const glm::dvec3& world) const {
 }
 
 std::uint64_t BitGrid::count() const {
-    return std::transform_reduce(mWords.begin(), mWords.end(), std::uint64_t{0}, std::plus<>(),
-                                 [](std::uint32_t word) {
-                                     return static_cast<std::uint64_t>(std::popcount(word));
-                                 });
+    return std::transform_reduce(
+        mWords.begin(), mWords.end(), std::uint64_t{0}, std::plus<>(),
+        [](std::uint32_t word) { return static_cast<std::uint64_t>(std::popcount(word)); });
 }
 
 std::uint32_t BitGrid::countNearer(const glm::uvec2& column, std::uint32_t slice) const {

@@ -1,5 +1,7 @@
 #include <lamina/grid/grid_transform.hpp>
 
+#include "lamina/shared/constants.glsl"
+
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include <algorithm>
@@ -13,7 +15,9 @@ Error invalid(std::string text) {
     return {ErrorCode::InvalidArgument, "grid transform: " + std::move(text)};
 }
 
-bool isFinite(double value) { return std::isfinite(value); }
+bool isFinite(double value) {
+    return std::isfinite(value);
+}
 
 bool isFinite(const glm::dmat4& matrix) {
     for (int column = 0; column < 4; ++column)
@@ -24,13 +28,15 @@ bool isFinite(const glm::dmat4& matrix) {
 }
 
 std::string numbers(const glm::dvec3& v) {
-    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
+    return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
+           ")";
 }
 
 Result<void> checkSize(const glm::uvec3& size) {
     if (size.x == 0 || size.y == 0 || size.z == 0)
-        return invalid("expected at least one voxel along each axis, found " + std::to_string(size.x) +
-                       " x " + std::to_string(size.y) + " x " + std::to_string(size.z));
+        return invalid("expected at least one voxel along each axis, found " +
+                       std::to_string(size.x) + " x " + std::to_string(size.y) + " x " +
+                       std::to_string(size.z));
     return {};
 }
 
@@ -89,17 +95,19 @@ Result<GridCamera> GridCamera::fromMatrices(const glm::dmat4& view, const glm::d
         camera.bottom = camera.near * (at(1, 2) - 1.0) / at(1, 1);
         camera.top = camera.near * (at(1, 2) + 1.0) / at(1, 1);
     } else {
-        return invalid("expected a projection matrix whose last row is (0,0,0,1) or (0,0,-1,0), found (" +
-                       std::to_string(at(3, 0)) + ", " + std::to_string(at(3, 1)) + ", " +
-                       std::to_string(at(3, 2)) + ", " + std::to_string(at(3, 3)) + ")");
+        return invalid(
+            "expected a projection matrix whose last row is (0,0,0,1) or (0,0,-1,0), found (" +
+            std::to_string(at(3, 0)) + ", " + std::to_string(at(3, 1)) + ", " +
+            std::to_string(at(3, 2)) + ", " + std::to_string(at(3, 3)) + ")");
     }
     const bool perspective = camera.projection == Projection::Perspective;
     if (!isFinite(camera.near) || !isFinite(camera.far) || camera.near >= camera.far ||
         (perspective && camera.near <= 0.0))
-        return invalid("expected a projection with depth in [-1,1], near to -1 and a finite far plane; "
-                       "its planes read near " +
-                       std::to_string(camera.near) + ", far " + std::to_string(camera.far) +
-                       "; for reversed, infinite or [0,1] depth build a GridCamera from its numbers");
+        return invalid(
+            "expected a projection with depth in [-1,1], near to -1 and a finite far plane; "
+            "its planes read near " +
+            std::to_string(camera.near) + ", far " + std::to_string(camera.far) +
+            "; for reversed, infinite or [0,1] depth build a GridCamera from its numbers");
     return camera;
 }
 
@@ -250,8 +258,9 @@ double GridTransform::sliceCoordinate(double depth) const {
         return 0.0;
     if (fraction >= 1.0)
         return slices;
-    const auto upper = std::upper_bound(mBoundaries.begin(), mBoundaries.end(), fraction,
-                                        [](double value, float boundary) { return value < boundary; });
+    const auto upper =
+        std::upper_bound(mBoundaries.begin(), mBoundaries.end(), fraction,
+                         [](double value, float boundary) { return value < boundary; });
     const auto k = static_cast<std::size_t>(upper - mBoundaries.begin()) - 1;
     const double low = mBoundaries[k];
     return static_cast<double>(k) + (fraction - low) / (mBoundaries[k + 1] - low);
@@ -269,9 +278,17 @@ double GridTransform::depthAtSlice(double sliceCoordinate) const {
 }
 
 std::optional<std::uint32_t> GridTransform::sliceAt(double depth) const {
-    if (!(depth >= mNear && depth <= mFar))
+    // The same steps as laminaSliceAt() in lamina/slice_distribution.glsl.
+    const double fraction = (depth - mNear) * (1.0 / (mFar - mNear));
+    if (!(fraction >= -LAMINA_DEPTH_SNAP && fraction <= 1.0 + LAMINA_DEPTH_SNAP))
         return std::nullopt;
-    return std::min(static_cast<std::uint32_t>(std::max(sliceCoordinate(depth), 0.0)), mSize.z - 1);
+    const double snapped = std::max(fraction + LAMINA_DEPTH_SNAP, 0.0);
+    if (mBoundaries.empty())
+        return std::min(static_cast<std::uint32_t>(snapped * mSize.z), mSize.z - 1);
+    const auto upper =
+        std::upper_bound(mBoundaries.begin(), mBoundaries.end(), snapped,
+                         [](double value, float boundary) { return value < boundary; });
+    return std::min(static_cast<std::uint32_t>(upper - mBoundaries.begin()) - 1, mSize.z - 1);
 }
 
 glm::dvec3 GridTransform::worldToGrid(const glm::dvec3& world) const {

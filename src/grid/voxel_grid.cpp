@@ -18,7 +18,8 @@ struct VoxelGrid::Impl {
     std::optional<GridTransform> transform;
 };
 
-VoxelGrid::VoxelGrid(std::unique_ptr<Impl> impl) : mImpl(std::move(impl)) {}
+VoxelGrid::VoxelGrid(std::unique_ptr<Impl> impl)
+    : mImpl(std::move(impl)) {}
 VoxelGrid::VoxelGrid(VoxelGrid&&) noexcept = default;
 VoxelGrid& VoxelGrid::operator=(VoxelGrid&&) noexcept = default;
 VoxelGrid::~VoxelGrid() = default;
@@ -26,8 +27,8 @@ VoxelGrid::~VoxelGrid() = default;
 Result<VoxelGrid> VoxelGrid::create(const Device& device) {
     auto impl = std::make_unique<Impl>();
     impl->device = device.state();
-    auto uniforms = gl::createBuffer(impl->device, sizeof(GridBlock), nullptr, GL_DYNAMIC_STORAGE_BIT,
-                                     "voxel grid", "lamina grid constants");
+    auto uniforms = gl::createBuffer(impl->device, sizeof(GridBlock), nullptr,
+                                     GL_DYNAMIC_STORAGE_BIT, "voxel grid", "lamina grid constants");
     if (!uniforms)
         return uniforms.error();
     impl->uniforms = std::move(*uniforms);
@@ -36,8 +37,8 @@ Result<VoxelGrid> VoxelGrid::create(const Device& device) {
 
 Result<void> VoxelGrid::resize(const GridTransform& transform) {
     const glm::uvec3 size = transform.size();
-    const glm::uvec3 textureSize{size.x, size.y,
-                                 (size.z + BitGrid::kSlicesPerGroup - 1) / BitGrid::kSlicesPerGroup};
+    const glm::uvec3 textureSize{
+        size.x, size.y, (size.z + BitGrid::kSlicesPerGroup - 1) / BitGrid::kSlicesPerGroup};
     if (transform.sliceBoundaries().size() > LAMINA_MAX_SLICE_BOUNDARIES)
         return Error{ErrorCode::DeviceLimit,
                      "voxel grid: needs " + std::to_string(size.z) +
@@ -76,16 +77,18 @@ Result<void> VoxelGrid::upload(const BitGrid& bits) {
 
 Result<BitGrid> VoxelGrid::download() const {
     if (!mImpl->transform)
-        return Error{ErrorCode::InvalidArgument,
-                     "voxel grid: expected voxels to download, found a grid of no size; voxelize into it "
-                     "first"};
+        return Error{
+            ErrorCode::InvalidArgument,
+            "voxel grid: expected voxels to download, found a grid of no size; voxelize into it "
+            "first"};
     auto bits = BitGrid::create(*mImpl->transform);
     if (!bits)
         return bits;
     gl::DeviceState& device = *mImpl->device;
     const gl::DebugGroup group(device, "lamina: download voxels");
     const gl::PixelPackGuard guard(device);
-    // GL takes the size in bytes as a 32-bit integer, too small for the largest grids: band by band.
+    // GL takes the size in bytes as a 32-bit integer, too small for the largest grids: band by
+    // band.
     const glm::uvec3 size = mImpl->textureSize;
     const std::size_t rowWords = std::size_t{size.x} * 4;
     const auto bandRows = static_cast<std::uint32_t>((std::size_t{1} << 28) / rowWords);
@@ -116,8 +119,14 @@ void VoxelGrid::bind(std::uint32_t uniformBufferBinding, std::uint32_t textureUn
 const GridTransform* VoxelGrid::transform() const {
     return mImpl->transform ? &*mImpl->transform : nullptr;
 }
-std::uint32_t VoxelGrid::texture() const { return mImpl->words.id(); }
-std::uint32_t VoxelGrid::uniformBuffer() const { return mImpl->uniforms.id(); }
-std::uint64_t VoxelGrid::gpuBytes() const { return mImpl->uniforms.bytes() + mImpl->words.bytes(); }
+std::uint32_t VoxelGrid::texture() const {
+    return mImpl->words.id();
+}
+std::uint32_t VoxelGrid::uniformBuffer() const {
+    return mImpl->uniforms.id();
+}
+std::uint64_t VoxelGrid::gpuBytes() const {
+    return mImpl->uniforms.bytes() + mImpl->words.bytes();
+}
 
 } // namespace lamina

@@ -11,7 +11,8 @@ struct MeshBuffers::Impl {
     std::uint32_t indexCount = 0;
 };
 
-MeshBuffers::MeshBuffers(std::unique_ptr<Impl> impl) : mImpl(std::move(impl)) {}
+MeshBuffers::MeshBuffers(std::unique_ptr<Impl> impl)
+    : mImpl(std::move(impl)) {}
 MeshBuffers::MeshBuffers(MeshBuffers&&) noexcept = default;
 MeshBuffers& MeshBuffers::operator=(MeshBuffers&&) noexcept = default;
 MeshBuffers::~MeshBuffers() = default;

@@ -7,7 +7,9 @@
 namespace lamina {
 namespace {
 
-std::uint64_t indexBytes(IndexType type) { return type == IndexType::UInt16 ? 2 : 4; }
+std::uint64_t indexBytes(IndexType type) {
+    return type == IndexType::UInt16 ? 2 : 4;
+}
 
 std::uint64_t bufferBytes(const GladGLContext& gl, GLuint buffer) {
     GLint64 size = 0;
@@ -48,14 +50,15 @@ Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view, 
                          "; repack the vertices"};
     if (view.vertexStrideBytes == 0 || view.positionOffsetBytes % 4 != 0 ||
         view.vertexStrideBytes % 4 != 0)
-        return invalid("expected a vertex stride above 0 and stride and offset in multiples of 4 bytes, "
-                       "found stride " +
-                       std::to_string(view.vertexStrideBytes) + ", offset " +
-                       std::to_string(view.positionOffsetBytes));
+        return invalid(
+            "expected a vertex stride above 0 and stride and offset in multiples of 4 bytes, "
+            "found stride " +
+            std::to_string(view.vertexStrideBytes) + ", offset " +
+            std::to_string(view.positionOffsetBytes));
     if (view.vertexCount > 0) {
-        const std::uint64_t needed =
-            view.positionOffsetBytes +
-            std::uint64_t{view.vertexCount - 1} * view.vertexStrideBytes + kPositionBytes;
+        const std::uint64_t needed = view.positionOffsetBytes +
+                                     std::uint64_t{view.vertexCount - 1} * view.vertexStrideBytes +
+                                     kPositionBytes;
         const std::uint64_t found = bufferBytes(gl, view.vertexBuffer);
         if (needed > found)
             return invalid("expected a vertex buffer of " + std::to_string(needed) + " bytes for " +
@@ -101,8 +104,8 @@ void drawMeshView(gl::DeviceState& device, GLuint vertexArray, const MeshView& v
     if (view.indexType == IndexType::None) {
         for (std::uint64_t first = 0; first < view.vertexCount; first += kMaxPerDraw)
             gl.DrawArrays(GL_TRIANGLES, static_cast<GLint>(first),
-                          static_cast<GLsizei>(std::min<std::uint64_t>(view.vertexCount - first,
-                                                                       kMaxPerDraw)));
+                          static_cast<GLsizei>(
+                              std::min<std::uint64_t>(view.vertexCount - first, kMaxPerDraw)));
         return;
     }
     gl.VertexArrayElementBuffer(vertexArray, view.indexBuffer);

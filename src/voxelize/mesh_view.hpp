@@ -8,16 +8,16 @@
 
 namespace lamina {
 
-/// Checks a MeshView against its buffers and the device. `index`: of the source in the call, for the
-/// error's text.
+/// Checks a MeshView against its buffers and the device. `index`: of the source in the call, for
+/// the error's text.
 [[nodiscard]] Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view,
                                          std::size_t index);
 
 /// Triangles a MeshView draws.
 [[nodiscard]] std::uint64_t triangleCount(const MeshView& view);
 
-/// Points `vertexArray` at the view's buffers (no binding changes) and draws the view with the vertex
-/// array, which must be bound.
+/// Points `vertexArray` at the view's buffers (no binding changes) and draws the view with the
+/// vertex array, which must be bound.
 void drawMeshView(gl::DeviceState& device, GLuint vertexArray, const MeshView& view);
 
 } // namespace lamina

@@ -112,8 +112,7 @@ SlicemapVoxelizer::prepare(std::span<const GeometrySource> sources, const GridTr
                              "voxelize: source " + std::to_string(i) +
                                  ": expected a DrawSource with a vertex stage and a draw callback, "
                                  "found one without"};
-            built =
-                program({GL_VERTEX_SHADER, "voxelize/vertex_main.glsl", source.vertexShader});
+            built = program({GL_VERTEX_SHADER, "voxelize/vertex_main.glsl", source.vertexShader});
         }
         if (!built)
             return built.error();
@@ -137,9 +136,8 @@ void SlicemapVoxelizer::uploadDrawBlocks(std::span<const PreparedSource> sources
     block.size = {transform.size(), gridFlags(transform)};
     // Twice the rasterizer's snapping distance, and the rounding of normalized device coordinates.
     const auto columns = static_cast<float>(std::max(transform.size().x, transform.size().y));
-    block.dilation.x =
-        2.0f * std::ldexp(1.0f, -static_cast<int>(mDevice->limits.subpixelBits)) +
-        columns * 0x1p-22f;
+    block.dilation.x = 2.0f * std::ldexp(1.0f, -static_cast<int>(mDevice->limits.subpixelBits)) +
+                       columns * 0x1p-22f;
 
     std::size_t offset = 0;
     for (std::uint32_t pass = 0; pass < passCount; ++pass) {
@@ -168,10 +166,13 @@ void SlicemapVoxelizer::drawPass(std::span<const GeometrySource> sources,
                                  const DrawContext& context, gl::RasterStateGuard& guard) {
     const GladGLContext& gl = mDevice->gl;
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        const std::size_t offset =
-            (context.pass * sources.size() + i) * mDrawBlockStride;
-        gl.BindBufferRange(GL_UNIFORM_BUFFER, LAMINA_DRAW_BLOCK_BINDING, mDrawBlocks.id(),
-                           static_cast<GLintptr>(offset), sizeof(shared::LaminaDrawConstants));
+        // Multi-bind leaves the host's generic uniform buffer binding alone.
+        const GLuint buffer = mDrawBlocks.id();
+        const auto offset =
+            static_cast<GLintptr>((context.pass * sources.size() + i) * mDrawBlockStride);
+        constexpr GLsizeiptr kBlockBytes = sizeof(shared::LaminaDrawConstants);
+        gl.BindBuffersRange(GL_UNIFORM_BUFFER, LAMINA_DRAW_BLOCK_BINDING, 1, &buffer, &offset,
+                            &kBlockBytes);
         gl.UseProgram(prepared[i].program);
         if (const auto* view = std::get_if<MeshView>(&sources[i])) {
             guard.setHostPrimitiveRestart(false);

@@ -8,16 +8,20 @@ namespace lamina {
 
 std::string_view name(Coverage coverage) {
     switch (coverage) {
-    case Coverage::Sampled: return "sampled";
-    case Coverage::Filled: return "filled";
+    case Coverage::Sampled:
+        return "sampled";
+    case Coverage::Filled:
+        return "filled";
     }
     return "unknown";
 }
 
 std::string_view name(Backend backend) {
     switch (backend) {
-    case Backend::Automatic: return "auto";
-    case Backend::Slicemap: return "slicemap";
+    case Backend::Automatic:
+        return "auto";
+    case Backend::Slicemap:
+        return "slicemap";
     }
     return "unknown";
 }
@@ -28,9 +32,10 @@ Result<std::unique_ptr<Voxelizer>> Voxelizer::create(const Device& device,
     if (!created)
         return created;
     std::string& reason = (*created)->mReason;
-    reason = desc.backend == Backend::Automatic
-                 ? "slicemap serves " + std::string(name(desc.coverage)) + " coverage on every device"
-                 : std::string(name(desc.backend)) + " was asked for";
+    reason =
+        desc.backend == Backend::Automatic
+            ? "slicemap serves " + std::string(name(desc.coverage)) + " coverage on every device"
+            : std::string(name(desc.backend)) + " was asked for";
     device.state()->say(MessageSeverity::Info, "voxelizer: " + reason);
     return created;
 }

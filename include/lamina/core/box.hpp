@@ -17,7 +17,9 @@ struct Box3 {
             max[axis] = point[axis] > max[axis] ? point[axis] : max[axis];
         }
     }
-    [[nodiscard]] bool isEmpty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+    [[nodiscard]] bool isEmpty() const {
+        return !(min.x <= max.x && min.y <= max.y && min.z <= max.z);
+    }
     [[nodiscard]] glm::dvec3 size() const { return max - min; }
     [[nodiscard]] glm::dvec3 center() const { return 0.5 * (min + max); }
 };

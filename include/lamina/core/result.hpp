@@ -31,7 +31,8 @@ enum class ErrorCode : std::uint8_t {
 /// The enumerator's name, e.g. "InvalidMesh".
 [[nodiscard]] LAMINA_API std::string_view name(ErrorCode code);
 
-/// Why an operation failed. `text` reads "operation: what was expected, what was found; what to do".
+/// Why an operation failed. `text` reads "operation: what was expected, what was found; what to
+/// do".
 struct Error {
     ErrorCode code = ErrorCode::InvalidArgument;
     std::string text;
@@ -42,8 +43,10 @@ struct Error {
 template<class T>
 class [[nodiscard]] Result {
 public:
-    Result(T value) : mState(std::in_place_index<0>, std::move(value)) {}
-    Result(Error error) : mState(std::in_place_index<1>, std::move(error)) {}
+    Result(T value)
+        : mState(std::in_place_index<0>, std::move(value)) {}
+    Result(Error error)
+        : mState(std::in_place_index<1>, std::move(error)) {}
 
     [[nodiscard]] bool hasValue() const { return mState.index() == 0; }
     explicit operator bool() const { return hasValue(); }
@@ -78,7 +81,9 @@ template<>
 class [[nodiscard]] Result<void> {
 public:
     Result() = default;
-    Result(Error error) : mError(std::move(error)), mFailed(true) {}
+    Result(Error error)
+        : mError(std::move(error))
+        , mFailed(true) {}
 
     [[nodiscard]] bool hasValue() const { return !mFailed; }
     explicit operator bool() const { return hasValue(); }

@@ -13,9 +13,10 @@ namespace lamina {
 
 /// Triangles in host memory.
 struct TriangleMesh {
-    std::vector<glm::vec3> positions;  ///< World (or model) units, one per vertex.
-    std::vector<glm::vec3> normals;    ///< Unit length, one per vertex, or empty.
-    std::vector<glm::vec4> colors;     ///< RGBA in [0,1] as the file stores them, one per vertex, or empty.
+    std::vector<glm::vec3> positions; ///< World (or model) units, one per vertex.
+    std::vector<glm::vec3> normals;   ///< Unit length, one per vertex, or empty.
+    std::vector<glm::vec4>
+        colors; ///< RGBA in [0,1] as the file stores them, one per vertex, or empty.
     std::vector<glm::uvec3> triangles; ///< Vertex indices, counter-clockwise seen from outside.
 
     /// The box around the vertices that triangles use; empty without triangles. Cost: one pass.

@@ -22,9 +22,8 @@ struct DeviceState;
 class GetProcAddress {
 public:
     template<class Loader>
-        requires(!std::is_same_v<std::remove_cvref_t<Loader>, GetProcAddress> &&
-                 std::is_invocable_v<Loader&, const char*>)
-    GetProcAddress(Loader loader)
+    requires(!std::is_same_v<std::remove_cvref_t<Loader>, GetProcAddress> &&
+             std::is_invocable_v<Loader&, const char*>) GetProcAddress(Loader loader)
         : mLoad([loader = std::move(loader)](const char* name) mutable {
             return reinterpret_cast<void*>(loader(name));
         }) {}
@@ -46,7 +45,7 @@ struct Message {
 struct DeviceDesc {
     /// Most bytes of GL memory that objects of this device may hold together; 0: no limit.
     std::uint64_t memoryBudgetBytes = 0;
-    /// Folder with a `shaders` tree that overrides the embedded one file by file, for shader
+    /// A shader root (the repository's shaders/) whose files replace the embedded ones, for shader
     /// development; empty: embedded shaders only. Read when a program is first built.
     std::filesystem::path shaderOverrideDirectory;
     /// Receives messages, on the thread of the call that causes them; may be empty. Lamina never
@@ -56,16 +55,16 @@ struct DeviceDesc {
 
 /// What the GL implementation can do.
 struct DeviceLimits {
-    std::uint32_t maxTextureSize = 0;            ///< Columns in x or y.
-    std::uint32_t maxArrayTextureLayers = 0;     ///< Groups of 128 slices.
-    std::uint32_t maxViewportWidth = 0;          ///< Pixels.
-    std::uint32_t maxViewportHeight = 0;         ///< Pixels.
-    std::uint32_t maxDrawBuffers = 0;            ///< Render targets of one pass.
-    std::uint32_t maxVertexAttribStride = 0;     ///< Bytes.
-    std::uint32_t maxUniformBufferBindings = 0;  ///< Binding points.
-    std::uint32_t maxCombinedTextureUnits = 0;   ///< Texture units.
+    std::uint32_t maxTextureSize = 0;               ///< Columns in x or y.
+    std::uint32_t maxArrayTextureLayers = 0;        ///< Groups of 128 slices.
+    std::uint32_t maxViewportWidth = 0;             ///< Pixels.
+    std::uint32_t maxViewportHeight = 0;            ///< Pixels.
+    std::uint32_t maxDrawBuffers = 0;               ///< Render targets of one pass.
+    std::uint32_t maxVertexAttribStride = 0;        ///< Bytes.
+    std::uint32_t maxUniformBufferBindings = 0;     ///< Binding points.
+    std::uint32_t maxCombinedTextureUnits = 0;      ///< Texture units.
     std::uint32_t uniformBufferOffsetAlignment = 1; ///< Bytes.
-    std::uint32_t subpixelBits = 0;              ///< Fraction bits of rasterized window coordinates.
+    std::uint32_t subpixelBits = 0; ///< Fraction bits of rasterized window coordinates.
 };
 
 /// Which implementation it is.
@@ -89,8 +88,8 @@ struct DeviceInfo {
 class LAMINA_API Device {
 public:
     /// Looks at the context current on this thread. `load` is used during this call only.
-    /// Errors: NoContext (nothing current), UnsupportedDevice (older than OpenGL 4.5, or OpenGL ES).
-    /// GL: creates nothing, changes nothing.
+    /// Errors: NoContext (nothing current), UnsupportedDevice (older than OpenGL 4.5, or OpenGL
+    /// ES). GL: creates nothing, changes nothing.
     [[nodiscard]] static Result<Device> fromCurrentContext(const GetProcAddress& load,
                                                            const DeviceDesc& desc = {});
 

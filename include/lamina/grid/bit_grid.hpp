@@ -71,9 +71,10 @@ public:
                 for (std::uint32_t x = 0; x < dims.x; ++x)
                     for (std::uint32_t word = 0; word < 4; ++word)
                         for (std::uint32_t bits = mWords[index++]; bits != 0; bits &= bits - 1)
-                            visit(glm::uvec3(x, y,
-                                             group * kSlicesPerGroup + word * 32 +
-                                                 static_cast<std::uint32_t>(std::countr_zero(bits))));
+                            visit(
+                                glm::uvec3(x, y,
+                                           group * kSlicesPerGroup + word * 32 +
+                                               static_cast<std::uint32_t>(std::countr_zero(bits))));
     }
 
     /// Groups of 128 slices: the layers of VoxelGrid's texture.
@@ -96,7 +97,8 @@ public:
     [[nodiscard]] Result<BitGrid> reoriented(Axis axis) const;
 
 private:
-    explicit BitGrid(const GridTransform& transform) : mTransform(transform) {}
+    explicit BitGrid(const GridTransform& transform)
+        : mTransform(transform) {}
 
     GridTransform mTransform;
     std::vector<std::uint32_t> mWords;

@@ -50,7 +50,8 @@ private:
 
 /// A camera whose pixels are the columns of a grid.
 struct GridCamera {
-    glm::dmat4 worldToEye{1.0}; ///< Affine; the camera looks along -z of eye space, y up (OpenGL's view matrix).
+    glm::dmat4 worldToEye{
+        1.0}; ///< Affine; the camera looks along -z of eye space, y up (OpenGL's view matrix).
     Projection projection = Projection::Orthographic;
     /// The window: eye-space x and y, in world units; for a perspective camera at depth `near`
     /// (as in glFrustum).
@@ -60,9 +61,9 @@ struct GridCamera {
 
     /// A perspective camera with a symmetric window.
     /// verticalFieldOfView: radians in (0, pi); aspect: width / height.
-    [[nodiscard]] LAMINA_API static GridCamera
-    perspective(const glm::dmat4& worldToEye, double verticalFieldOfView, double aspect, double near,
-                double far);
+    [[nodiscard]] LAMINA_API static GridCamera perspective(const glm::dmat4& worldToEye,
+                                                           double verticalFieldOfView,
+                                                           double aspect, double near, double far);
 
     /// The camera of an engine's view and projection matrices. `projection` maps to OpenGL clip
     /// space with depth in [-1,1], near to -1, without skew (glm::ortho, glm::perspective,
@@ -83,17 +84,17 @@ struct GridCamera {
 class LAMINA_API GridTransform {
 public:
     /// A grid over an axis-aligned world box, columns along `axis`.
-    /// voxels: counts along world x, y, z. Slices go along +axis; columns x, y of the grid are the two
-    /// axes that follow `axis` cyclically (X: y,z; Y: z,x; Z: x,y).
-    /// Errors: InvalidArgument (non-finite or zero-size box, zero counts).
+    /// voxels: counts along world x, y, z. Slices go along +axis; columns x, y of the grid are the
+    /// two axes that follow `axis` cyclically (X: y,z; Y: z,x; Z: x,y). Errors: InvalidArgument
+    /// (non-finite or zero-size box, zero counts).
     [[nodiscard]] static Result<GridTransform>
     box(const Box3& world, const glm::uvec3& voxels, Axis axis = Axis::Z,
         const SliceDistribution& distribution = SliceDistribution::linear());
 
     /// A grid whose columns are the pixels of `camera`.
     /// size: columns in x, columns in y, slices.
-    /// Errors: InvalidArgument (near >= far, near <= 0 for perspective or logarithmic, empty window,
-    /// singular or non-affine worldToEye, zero counts, custom boundaries that do not fit).
+    /// Errors: InvalidArgument (near >= far, near <= 0 for perspective or logarithmic, empty
+    /// window, singular or non-affine worldToEye, zero counts, custom boundaries that do not fit).
     [[nodiscard]] static Result<GridTransform>
     camera(const GridCamera& camera, const glm::uvec3& size,
            const SliceDistribution& distribution = SliceDistribution::linear());
@@ -123,6 +124,7 @@ public:
     /// Depth at a slice coordinate in [0, slices] (clamped), world units.
     [[nodiscard]] double depthAtSlice(double sliceCoordinate) const;
     /// The slice that holds `depth`, or nothing outside [near, far]; far belongs to the last slice.
+    /// A depth within 2^-40 of the depth range before a boundary counts as on it.
     [[nodiscard]] std::optional<std::uint32_t> sliceAt(double depth) const;
     /// slices + 1 increasing fractions of the depth range; empty for a linear distribution.
     [[nodiscard]] std::span<const float> sliceBoundaries() const { return mBoundaries; }

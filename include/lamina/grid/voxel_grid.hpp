@@ -13,8 +13,9 @@ namespace lamina {
 
 /// Voxels in GL memory, one bit each: the result of a Voxelizer, and what shaders query.
 ///
-/// A `GL_RGBA32UI` 2D array texture of columns x by columns y, one layer per 128 slices: bit (k & 31)
-/// of component (k >> 5) & 3 of layer k >> 7 is slice k. A uniform buffer holds the grid's constants.
+/// A `GL_RGBA32UI` 2D array texture of columns x by columns y, one layer per 128 slices: bit (k &
+/// 31) of component (k >> 5) & 3 of layer k >> 7 is slice k. A uniform buffer holds the grid's
+/// constants.
 /// `#include <lamina/grid.glsl>` queries both. Reused across frames: memory is allocated again only
 /// when the number of columns or layers changes. Move-only; see Device for threads and lifetime.
 class LAMINA_API VoxelGrid {
@@ -43,8 +44,8 @@ public:
     /// Binds grid number `grid` of lamina/grid.glsl: the uniform buffer to binding
     /// uniformBufferBinding + grid, the texture (and no sampler object) to unit textureUnit + grid,
     /// where the bases are LAMINA_GRID_BLOCK_BINDING and LAMINA_GRID_TEXTURE_UNIT of the shader.
-    /// Does nothing on a grid of no size. GL: these two bindings (and the sampler binding of the unit)
-    /// are what it changes; the caller restores them if need be.
+    /// Does nothing on a grid of no size. GL: these two bindings (and the sampler binding of the
+    /// unit) are what it changes; the caller restores them if need be.
     void bind(std::uint32_t uniformBufferBinding = 0, std::uint32_t textureUnit = 0,
               std::uint32_t grid = 0) const;
 

@@ -19,15 +19,15 @@ enum class IndexType : std::uint8_t { None, UInt16, UInt32 };
 
 /// Triangles in the host's own GL buffers (GL_TRIANGLES). Borrowed for the call; nothing is copied.
 struct MeshView {
-    std::uint32_t vertexBuffer = 0;       ///< GL buffer name.
+    std::uint32_t vertexBuffer = 0;        ///< GL buffer name.
     std::uint64_t positionOffsetBytes = 0; ///< Of vertex 0's position (three floats) in the buffer.
-    std::uint32_t vertexStrideBytes = 12; ///< From one vertex to the next.
-    std::uint32_t vertexCount = 0;        ///< Vertices in the buffer; not indexed: what is drawn.
+    std::uint32_t vertexStrideBytes = 12;  ///< From one vertex to the next.
+    std::uint32_t vertexCount = 0;         ///< Vertices in the buffer; not indexed: what is drawn.
 
-    std::uint32_t indexBuffer = 0;       ///< GL buffer name; unused for IndexType::None.
+    std::uint32_t indexBuffer = 0; ///< GL buffer name; unused for IndexType::None.
     IndexType indexType = IndexType::None;
-    std::uint64_t indexOffsetBytes = 0;  ///< Of the first index; a multiple of the index size.
-    std::uint32_t indexCount = 0;        ///< Three a triangle.
+    std::uint64_t indexOffsetBytes = 0; ///< Of the first index; a multiple of the index size.
+    std::uint32_t indexCount = 0;       ///< Three a triangle.
 
     glm::mat4 model{1.0f};        ///< Affine, model to world.
     std::uint32_t materialId = 0; ///< Index into the material table.
@@ -35,21 +35,22 @@ struct MeshView {
 
 /// What the draw callback of a DrawSource is given.
 struct DrawContext {
-    std::uint32_t program = 0;   ///< GL program in use: for the uniforms of the host's vertex stage.
-    std::uint32_t pass = 0;      ///< From 0; the callback runs once a pass.
+    std::uint32_t program = 0; ///< GL program in use: for the uniforms of the host's vertex stage.
+    std::uint32_t pass = 0;    ///< From 0; the callback runs once a pass.
     std::uint32_t passCount = 1; ///< Passes of this voxelize() call.
 };
 
 /// Geometry that the host's own vertex stage makes: skinned, instanced, displaced.
 struct DrawSource {
     /// GLSL 4.50 that defines `LaminaVertex laminaVertex()` (lamina/vertex_interface.glsl) and
-    /// declares what it needs: inputs, uniforms, buffers. It must not declare main(), nor use uniform
-    /// buffer bindings 0 and 1, nor names that begin with `lamina` or `Lamina` otherwise.
+    /// declares what it needs: inputs, uniforms, buffers. It must not declare main(), nor use
+    /// uniform buffer bindings 0 and 1, nor names that begin with `lamina` or `Lamina` otherwise.
     std::string vertexShader;
-    /// Binds the host's vertex array and resources and issues draws of GL_TRIANGLES, GL_TRIANGLE_STRIP
-    /// or GL_TRIANGLE_FAN. It runs with Lamina's program and framebuffer bound and must leave both;
-    /// vertex array, uniform buffers 0 and 1 and raster state are put back after voxelize(); what else
-    /// it binds (textures, storage buffers, other uniform buffers) stays as it leaves it.
+    /// Binds the host's vertex array and resources and issues draws of GL_TRIANGLES,
+    /// GL_TRIANGLE_STRIP or GL_TRIANGLE_FAN. It runs with Lamina's program and framebuffer bound
+    /// and must leave both; vertex array, uniform buffers 0 and 1 and raster state are put back
+    /// after voxelize(); what else it binds (textures, storage buffers, other uniform buffers)
+    /// stays as it leaves it.
     std::function<void(const DrawContext&)> draw;
 };
 

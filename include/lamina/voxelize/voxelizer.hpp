@@ -41,19 +41,19 @@ struct VoxelizerDesc {
 
 /// What a voxelizer can do on its device.
 struct VoxelizerCapabilities {
-    std::uint32_t maxColumns = 0;      ///< In x and in y.
-    std::uint32_t maxSlices = 0;       ///< Linear distribution.
-    std::uint32_t slicesPerPass = 0;   ///< Slices made by one pass of the geometry.
-    bool perspective = false;          ///< Perspective grids.
-    bool drawSources = false;          ///< Geometry by DrawSource.
+    std::uint32_t maxColumns = 0;    ///< In x and in y.
+    std::uint32_t maxSlices = 0;     ///< Linear distribution.
+    std::uint32_t slicesPerPass = 0; ///< Slices made by one pass of the geometry.
+    bool perspective = false;        ///< Perspective grids.
+    bool drawSources = false;        ///< Geometry by DrawSource.
 };
 
 /// What one voxelize() call did; known without waiting for the GPU.
 struct VoxelizeStats {
     std::uint32_t sources = 0;
-    std::uint32_t passes = 0;             ///< Passes over the geometry.
-    std::uint64_t meshTriangles = 0;      ///< Triangles of the MeshView sources.
-    std::uint64_t gridBytes = 0;          ///< GL memory of the grid.
+    std::uint32_t passes = 0;        ///< Passes over the geometry.
+    std::uint64_t meshTriangles = 0; ///< Triangles of the MeshView sources.
+    std::uint64_t gridBytes = 0;     ///< GL memory of the grid.
 };
 
 /// Turns triangles into voxels, on the GPU, every frame.
@@ -79,12 +79,12 @@ public:
 
     /// Voxelizes all `sources` into `out`, which takes the place of `transform`; what it held is
     /// replaced. An empty list of sources gives an empty grid. Does not wait for the GPU.
-    /// Errors: InvalidArgument (a MeshView that does not fit its buffers, naming source, expected and
-    /// found), DeviceLimit, OutOfMemory, ShaderError (a DrawSource's vertex stage); `out` and the GL
-    /// state are then unchanged.
-    /// GL: `out` may be sampled at once, no barrier needed; writes of the host to its vertex buffers by
-    /// shaders need GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT before the call.
-    /// Cost: one pass of the geometry per capabilities().slicesPerPass slices; a clear of the grid.
+    /// Errors: InvalidArgument (a MeshView that does not fit its buffers, naming source, expected
+    /// and found), DeviceLimit, OutOfMemory, ShaderError (a DrawSource's vertex stage); `out` and
+    /// the GL state are then unchanged. GL: `out` may be sampled at once, no barrier needed; writes
+    /// of the host to its vertex buffers by shaders need GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
+    /// GL_ELEMENT_ARRAY_BARRIER_BIT before the call. Cost: one pass of the geometry per
+    /// capabilities().slicesPerPass slices; a clear of the grid.
     [[nodiscard]] virtual Result<VoxelizeStats> voxelize(std::span<const GeometrySource> sources,
                                                          const GridTransform& transform,
                                                          VoxelGrid& out) = 0;

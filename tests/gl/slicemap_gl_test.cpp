@@ -1,0 +1,294 @@
+// The slicemap backend against the double-precision references.
+
+#include "gl/support/gl_test.hpp"
+
+#include <lamina/mesh_io/mesh_file.hpp>
+#include <lamina/voxelize/voxelizer.hpp>
+
+#include <reference/column_triangle.hpp>
+#include <reference/filled.hpp>
+#include <reference/sampled.hpp>
+#include <reference/shapes.hpp>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+namespace lamina {
+namespace {
+
+namespace ref = reference;
+
+struct NamedMesh {
+    std::string name;
+    TriangleMesh mesh;
+};
+
+/// Closed, open, thin, concave and chaotic shapes in about [-1,1]^3.
+std::vector<NamedMesh> makeShapes() {
+    const Box3 box{{-1, -1, -1}, {1, 1, 1}};
+    const float radii[] = {1.0f, 0.8f, 0.5f};
+    return {
+        {"box", ref::makeBox({-0.9f, -0.8f, -0.7f}, {0.6f, 0.7f, 0.8f})},
+        {"tetrahedron", ref::makeTetrahedron({-0.9f, -0.7f, -0.8f}, {0.9f, -0.6f, -0.5f},
+                                             {0.1f, 0.9f, -0.4f}, {0.0f, 0.1f, 0.9f})},
+        {"icosphere", ref::makeIcosphere({0, 0, 0}, 0.95f, 4)},
+        {"torus knot", ref::makeTorusKnot({0, 0, 0}, 0.55f, 0.12f, 2, 3, 256, 24)},
+        {"menger sponge", ref::makeMengerSponge({0, 0, 0}, 1.8f, 2)},
+        {"nested shells", ref::makeNestedShells({0, 0, 0}, radii, 3)},
+        {"slivers", ref::makeSlivers(box, 3000, 0.8f, 0.002f, 1)},
+        {"triangle soup", ref::makeTriangleSoup(box, 4000, 0.3f, 2)},
+        {"sloped plane", ref::makePlane({0, 0, 0}, {0.3f, 0.2f, 1.0f}, 1.6f, 7)},
+        {"steep plane", ref::makePlane({0, 0, 0}, {1.0f, 0.3f, 0.001f}, 1.2f, 3)},
+    };
+}
+
+/// Real meshes: the Debian bunny where installed, and those of LAMINA_MESH_DIR.
+std::vector<NamedMesh> readRealMeshes() {
+    std::vector<std::filesystem::path> files = {"/usr/share/glmark2/models/bunny.obj"};
+    if (const char* directory = std::getenv("LAMINA_MESH_DIR"))
+        for (const char* file : {"bunny.ply", "armadillo.ply"})
+            files.push_back(std::filesystem::path(directory) / file);
+    std::vector<NamedMesh> meshes;
+    for (const auto& file : files) {
+        if (!std::filesystem::exists(file))
+            continue;
+        auto mesh = readMesh(file);
+        EXPECT_TRUE(mesh) << mesh.error().text;
+        if (mesh)
+            meshes.push_back({file.filename().string(), std::move(*mesh)});
+    }
+    return meshes;
+}
+
+GridTransform cameraGrid(Projection projection, const glm::uvec3& size,
+                         const SliceDistribution& distribution = SliceDistribution::linear()) {
+    const glm::dmat4 view = glm::lookAt(glm::dvec3(1.1, 1.7, 2.3), glm::dvec3(0.1, 0.0, -0.1),
+                                        glm::dvec3(0.1, 1.0, 0.0));
+    GridCamera camera = GridCamera::perspective(view, 0.9, double(size.x) / size.y, 1.2, 4.9);
+    if (projection == Projection::Orthographic) {
+        camera.projection = projection;
+        camera.left = -1.4;
+        camera.right = 1.5;
+        camera.bottom = -1.3;
+        camera.top = 1.4;
+    }
+    return GridTransform::camera(camera, size, distribution).value();
+}
+
+class SlicemapGlTest : public test::GlTest {
+protected:
+    BitGrid voxelize(Coverage coverage, std::span<const GeometrySource> sources,
+                     const GridTransform& transform) {
+        auto voxelizer = Voxelizer::create(device(), {Backend::Slicemap, coverage}).value();
+        auto grid = VoxelGrid::create(device()).value();
+        const auto stats = voxelizer->voxelize(sources, transform, grid);
+        EXPECT_TRUE(stats) << stats.error().text;
+        return grid.download().value();
+    }
+
+    BitGrid voxelize(Coverage coverage, const TriangleMesh& mesh, const GridTransform& transform,
+                     const glm::mat4& model = glm::mat4(1.0f)) {
+        auto buffers = MeshBuffers::upload(device(), mesh).value();
+        const GeometrySource source = buffers.view(model);
+        return voxelize(coverage, {&source, 1}, transform);
+    }
+};
+
+/// Why device and reference may disagree on a voxel: within `tolerance` columns of the column's
+/// centre runs an edge of a triangle, or within `tolerance` slices of a slice boundary lies its
+/// depth.
+bool isRounding(const std::vector<ref::ColumnTriangle>& triangles, const GridTransform& transform,
+                const glm::uvec3& voxel, double tolerance) {
+    const glm::dvec2 center = glm::dvec2(voxel.x, voxel.y) + 0.5;
+    for (const ref::ColumnTriangle& triangle : triangles) {
+        const glm::dvec2 low = triangle.min() - tolerance;
+        const glm::dvec2 high = triangle.max() + tolerance;
+        if (center.x < low.x || center.y < low.y || center.x > high.x || center.y > high.y)
+            continue;
+        if (ref::outlineDistance(triangle, center) <= tolerance)
+            return true;
+        if (!ref::owns(triangle, center))
+            continue;
+        const double slice = transform.sliceCoordinate(ref::depthAt(triangle, center));
+        if (std::abs(slice - std::round(slice)) <= tolerance &&
+            std::abs(slice - (voxel.z + 0.5)) <= 0.5 + tolerance)
+            return true;
+    }
+    return false;
+}
+
+/// Every difference is double rounding; at most one voxel in a thousand differs.
+void expectSampled(const BitGrid& device, const TriangleMesh& mesh, const GridTransform& transform,
+                   const std::string& name) {
+    constexpr double kRounding = 1e-9;
+    const BitGrid expected = ref::sampled(mesh, transform).value();
+    const BitGridComparison comparison = compare(device, expected).value();
+    const std::uint64_t differing = comparison.onlyFirst + comparison.onlySecond;
+    EXPECT_LE(differing * 1000, expected.count()) << name;
+    EXPECT_GT(expected.count(), 0u) << name;
+    if (differing == 0)
+        return;
+    const auto triangles = ref::columnTriangles(mesh, transform, glm::dmat4(1.0));
+    const auto expectRounding = [&](const BitGrid& set, const BitGrid& clear) {
+        set.forEachSet([&](const glm::uvec3& voxel) {
+            if (!clear.test(voxel)) {
+                EXPECT_TRUE(isRounding(triangles, transform, voxel, kRounding))
+                    << name << ": voxel " << voxel.x << ", " << voxel.y << ", " << voxel.z;
+            }
+        });
+    };
+    expectRounding(device, expected);
+    expectRounding(expected, device);
+}
+
+/// Nothing missing, nothing that a voxel grown by 1e-4 would not touch.
+void expectFilled(const BitGrid& device, const TriangleMesh& mesh, const GridTransform& transform,
+                  const std::string& name) {
+    // Shrunk by what double rounding may decide either way.
+    const BitGrid must = ref::filled(mesh, transform, {.grow = -1e-9}).value();
+    const BitGrid may = ref::filled(mesh, transform, {.grow = 1e-4}).value();
+    EXPECT_EQ(compare(must, device)->onlyFirst, 0u) << name << ": missing voxels";
+    EXPECT_EQ(compare(device, may)->onlyFirst, 0u) << name << ": superfluous voxels";
+    EXPECT_GT(must.count(), 0u) << name;
+}
+
+TEST_F(SlicemapGlTest, SampledIsExactOnVerticesAtPowerOfTwoFractions) {
+    for (const NamedMesh& shape : makeShapes())
+        for (const Axis axis : {Axis::X, Axis::Y, Axis::Z}) {
+            const GridTransform transform =
+                ref::makeDyadicGrid({{-1, -1, -1}, {1, 1, 1}}, {64, 48, 57}, axis);
+            const TriangleMesh mesh = ref::snapped(shape.mesh, transform);
+            const BitGrid expected = ref::sampled(mesh, transform).value();
+            const BitGrid found = voxelize(Coverage::Sampled, mesh, transform);
+            EXPECT_TRUE(compare(found, expected)->equal())
+                << shape.name << " along axis " << static_cast<int>(axis);
+            // Snapped, the steep plane stands edge-on in places.
+            if (shape.name != "steep plane") {
+                EXPECT_GT(expected.count(), 0u) << shape.name;
+            }
+        }
+}
+
+TEST_F(SlicemapGlTest, SampledAgreesWithTheReferenceOnAllShapes) {
+    const GridTransform transform =
+        GridTransform::box({{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}}, {101, 83, 128}).value();
+    for (const NamedMesh& shape : makeShapes())
+        expectSampled(voxelize(Coverage::Sampled, shape.mesh, transform), shape.mesh, transform,
+                      shape.name);
+}
+
+TEST_F(SlicemapGlTest, FilledAgreesWithTheReferenceOnAllShapes) {
+    const GridTransform transform =
+        GridTransform::box({{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}}, {101, 83, 128}).value();
+    for (const NamedMesh& shape : makeShapes()) {
+        const BitGrid filled = voxelize(Coverage::Filled, shape.mesh, transform);
+        expectFilled(filled, shape.mesh, transform, shape.name);
+        const BitGrid sampled = voxelize(Coverage::Sampled, shape.mesh, transform);
+        EXPECT_EQ(compare(sampled, filled)->onlyFirst, 0u)
+            << shape.name << ": filled misses sampled";
+    }
+}
+
+TEST_F(SlicemapGlTest, RealMeshesAgreeWithTheReference) {
+    for (const NamedMesh& real : readRealMeshes()) {
+        const GridTransform transform =
+            GridTransform::box(real.mesh.bounds(), {256, 256, 128}).value();
+        const BitGrid sampled = voxelize(Coverage::Sampled, real.mesh, transform);
+        const BitGrid filled = voxelize(Coverage::Filled, real.mesh, transform);
+        expectSampled(sampled, real.mesh, transform, real.name);
+        expectFilled(filled, real.mesh, transform, real.name);
+        EXPECT_EQ(compare(sampled, filled)->onlyFirst, 0u) << real.name;
+    }
+}
+
+TEST_F(SlicemapGlTest, CameraGridsAndSliceDistributionsAgreeWithTheReference) {
+    std::vector<float> boundaries(101);
+    for (std::size_t k = 0; k < boundaries.size(); ++k)
+        boundaries[k] = std::pow(static_cast<float>(k) / 100.0f, 1.7f);
+    const SliceDistribution distributions[] = {SliceDistribution::linear(),
+                                               SliceDistribution::logarithmic(),
+                                               SliceDistribution::custom(boundaries)};
+    for (const Projection projection : {Projection::Orthographic, Projection::Perspective})
+        for (const SliceDistribution& distribution : distributions) {
+            const GridTransform transform = cameraGrid(projection, {90, 71, 100}, distribution);
+            for (const NamedMesh& shape : makeShapes()) {
+                const std::string name = shape.name + ", " + transform.describe() +
+                                         ", distribution " +
+                                         std::to_string(static_cast<int>(distribution.kind()));
+                expectSampled(voxelize(Coverage::Sampled, shape.mesh, transform), shape.mesh,
+                              transform, name);
+                expectFilled(voxelize(Coverage::Filled, shape.mesh, transform), shape.mesh,
+                             transform, name);
+            }
+        }
+}
+
+TEST_F(SlicemapGlTest, TrianglesAroundTheEyeAgreeWithTheReference) {
+    // The camera stands inside the mesh: triangles cross the near plane and the eye's plane.
+    const glm::dmat4 view =
+        glm::lookAt(glm::dvec3(0.05, 0.1, 0.2), glm::dvec3(0.7, 0.2, -0.4), glm::dvec3(0, 1, 0));
+    const GridTransform transform =
+        GridTransform::camera(GridCamera::perspective(view, 1.3, 1.0, 0.1, 3.0), {80, 80, 96})
+            .value();
+    for (const NamedMesh& shape : makeShapes()) {
+        const BitGrid may = ref::filled(shape.mesh, transform, {.grow = 1e-4}).value();
+        if (may.count() == 0)
+            continue;
+        expectSampled(voxelize(Coverage::Sampled, shape.mesh, transform), shape.mesh, transform,
+                      shape.name);
+        expectFilled(voxelize(Coverage::Filled, shape.mesh, transform), shape.mesh, transform,
+                     shape.name);
+    }
+}
+
+TEST_F(SlicemapGlTest, SliceCountsAroundWordAndGroupEdges) {
+    const TriangleMesh mesh = ref::makeIcosphere({0, 0, 0}, 0.97f, 3);
+    for (const std::uint32_t slices :
+         {1u, 2u, 31u, 32u, 33u, 127u, 128u, 129u, 256u, 300u, 1024u}) {
+        const GridTransform transform =
+            GridTransform::box({{-1, -1, -1}, {1, 1, 1}}, {40, 24, slices}).value();
+        const std::string name = std::to_string(slices) + " slices";
+        expectSampled(voxelize(Coverage::Sampled, mesh, transform), mesh, transform, name);
+        expectFilled(voxelize(Coverage::Filled, mesh, transform), mesh, transform, name);
+    }
+}
+
+TEST_F(SlicemapGlTest, GridSizesFromOneColumnToWide) {
+    const TriangleMesh mesh = ref::makeTorus({0.69f, 0.03f, 0}, 0.7f, 0.25f, 40, 20);
+    for (const glm::uvec2 columns :
+         {glm::uvec2{1, 1}, {1, 65}, {63, 2}, {513, 3}, {2049, 5}, {5, 4097}}) {
+        const GridTransform transform =
+            GridTransform::box({{-1, -1, -0.3}, {1, 1, 0.3}}, {columns.x, columns.y, 64}).value();
+        expectFilled(voxelize(Coverage::Filled, mesh, transform), mesh, transform,
+                     transform.describe());
+    }
+}
+
+TEST_F(SlicemapGlTest, FacesOnVoxelBoundariesSetOneLayer) {
+    // The box fills the grid exactly; every face lies on a boundary.
+    const TriangleMesh mesh = ref::makeBox({0.1f, 0.2f, 0.3f}, {0.9f, 1.0f, 1.1f});
+    const GridTransform transform = GridTransform::box(mesh.bounds(), {10, 10, 10}).value();
+    for (const Coverage coverage : {Coverage::Sampled, Coverage::Filled}) {
+        const BitGrid found = voxelize(coverage, mesh, transform);
+        EXPECT_EQ(found.count(), 200u) << name(coverage);
+        for (std::uint32_t y = 0; y < 10; ++y)
+            for (std::uint32_t x = 0; x < 10; ++x) {
+                EXPECT_TRUE(found.test({x, y, 0}));
+                EXPECT_TRUE(found.test({x, y, 9}));
+            }
+    }
+}
+
+TEST_F(SlicemapGlTest, AMillionTrianglesInAThousandSlices) {
+    const TriangleMesh mesh = ref::makeTorusKnot({0, 0, 0}, 0.6f, 0.15f, 3, 5, 8192, 64);
+    ASSERT_GE(mesh.triangles.size(), 1000000u);
+    const GridTransform transform =
+        GridTransform::box({{-1.1, -1.1, -1.1}, {1.1, 1.1, 1.1}}, {1024, 1024, 1024}).value();
+    expectSampled(voxelize(Coverage::Sampled, mesh, transform), mesh, transform, "torus knot");
+}
+
+} // namespace
+} // namespace lamina
