@@ -35,18 +35,19 @@ uvec4 bitRange(int first, int last) {
 }
 
 #if LAMINA_COVERAGE == LAMINA_COVERAGE_FILLED
-// The square is taken this much larger, in columns, to absorb the rounding of the float arithmetic.
+// The square is taken this much larger, in columns, to absorb the rounding of float offsets in it.
 const float kFootprintAllowance = 1.0 / 131072.0;
 const float kHalfColumn = 0.5 + kFootprintAllowance;
 
-// Least and greatest value of dot(gradient, offset) over the part of the triangle in the column's
-// square; offsets are from the column's centre, which the triangle owns. The part is convex: its
-// vertices are the square's corners inside the triangle and the ends of the edges' parts in the square.
-vec2 extremesInColumn(LaminaColumnTriangle triangle, dvec2 center, vec2 gradient) {
-    vec2 range = vec2(0.0);
-    bvec4 cornerIsInside = bvec4(true);
+// Least and greatest plane value over the part of the triangle in the column's square, whose centre the
+// triangle owns. The part is convex: its vertices are the square's corners inside the triangle and the
+// ends of the edges' parts in the square. Values on an edge are interpolated between its ends, so that
+// rounding moves them along the edge but never off it, however steep the triangle.
+dvec2 extremesInColumn(LaminaColumnTriangle triangle, dvec2 center, double centerValue) {
     const vec4 cornerX = vec4(-kHalfColumn, kHalfColumn, -kHalfColumn, kHalfColumn);
     const vec4 cornerY = vec4(-kHalfColumn, -kHalfColumn, kHalfColumn, kHalfColumn);
+    bvec4 cornerIsInside = bvec4(true);
+    dvec2 range = dvec2(centerValue);
     for (int i = 0; i < 3; ++i) {
         dvec4 edge = triangle.edges[i];
         vec2 direction = vec2(edge.zw);
@@ -60,35 +61,37 @@ vec2 extremesInColumn(LaminaColumnTriangle triangle, dvec2 center, vec2 gradient
         cornerIsInside = bvec4(ivec4(cornerIsInside) * ivec4(greaterThanEqual(cornerDistances, vec4(0.0))));
         if (distance > 1.0)
             continue;
-        // The edge's points are origin + s * along, for s between its two ends. Each end is taken from
-        // its own coordinates: near the column, where it matters, the difference is small and exact.
+        // Points of the edge, as offsets from the centre: origin + s * along, s from ends.x to ends.y.
         vec2 origin = -distance * normal;
         bool isAscending = edge.z > 0.0lf || (edge.z == 0.0lf && edge.w > 0.0lf);
-        dvec2 anchor = edge.xy - center;
-        dvec2 otherEnd = isAscending ? anchor + edge.zw : anchor - edge.zw;
-        vec2 ends = vec2(dot(vec2(anchor), along), dot(vec2(otherEnd), along));
-        float low = max(min(ends.x, ends.y), -2.0);
-        float high = min(max(ends.x, ends.y), 2.0);
+        dvec2 a = isAscending ? edge.xy : edge.xy - edge.zw;
+        dvec2 b = isAscending ? edge.xy + edge.zw : edge.xy;
+        dvec2 ends = dvec2(dot(a - center, dvec2(along)), dot(b - center, dvec2(along)));
+        float low = max(float(ends.x), -2.0);
+        float high = min(float(ends.y), 2.0);
         for (int axis = 0; axis < 2; ++axis) {
             if (abs(along[axis]) > 1.0e-12) {
-                float a = (-kHalfColumn - origin[axis]) / along[axis];
-                float b = (kHalfColumn - origin[axis]) / along[axis];
-                low = max(low, min(a, b));
-                high = min(high, max(a, b));
+                float first = (-kHalfColumn - origin[axis]) / along[axis];
+                float second = (kHalfColumn - origin[axis]) / along[axis];
+                low = max(low, min(first, second));
+                high = min(high, max(first, second));
             } else if (abs(origin[axis]) > kHalfColumn) {
                 high = -3.0;
             }
         }
         if (low <= high) {
-            float a = dot(gradient, origin + low * along);
-            float b = dot(gradient, origin + high * along);
-            range = vec2(min(range.x, min(a, b)), max(range.y, max(a, b)));
+            double valueA = laminaPlaneValue(triangle, a);
+            double slope = (laminaPlaneValue(triangle, b) - valueA) / (ends.y - ends.x);
+            dvec2 values = valueA + slope * (dvec2(low, high) - ends.x);
+            range = dvec2(min(range.x, min(values.x, values.y)), max(range.y, max(values.x, values.y)));
         }
     }
+    vec2 gradient = vec2(triangle.depthPlane.xy);
     vec4 cornerValues = gradient.x * cornerX + gradient.y * cornerY;
     for (int corner = 0; corner < 4; ++corner)
         if (cornerIsInside[corner])
-            range = vec2(min(range.x, cornerValues[corner]), max(range.y, cornerValues[corner]));
+            range = dvec2(min(range.x, centerValue + double(cornerValues[corner])),
+                          max(range.y, centerValue + double(cornerValues[corner])));
     return range;
 }
 #endif
@@ -107,11 +110,7 @@ void main() {
     int slice = laminaSliceAt(isPerspective ? 1.0lf / value : value, laminaDraw);
     laminaBits = slice < 0 ? uvec4(0u) : bitRange(slice - firstSlice, slice - firstSlice);
 #else
-    vec2 gradient = vec2(triangle.depthPlane.xy);
-    vec2 extremes = extremesInColumn(triangle, center, gradient);
-    // Relative allowance for the float products above; zero for triangles that face the grid's camera.
-    float allowance = (abs(gradient.x) + abs(gradient.y)) * kFootprintAllowance;
-    dvec2 range = value + dvec2(extremes.x - allowance, extremes.y + allowance);
+    dvec2 range = extremesInColumn(triangle, center, value);
     if (isPerspective)
         range = dvec2(1.0lf / range.y, range.x > 0.0lf ? 1.0lf / range.x : triangle.depthRange.y);
     double near = laminaDraw.depthRange.x;

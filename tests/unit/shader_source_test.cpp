@@ -38,18 +38,21 @@ std::size_t countOf(std::string_view part, std::string_view text) {
     return count;
 }
 
-/// Where a GLSL 4.50 compiler sees the first line that contains `part`: the line after `#line N S`
-/// is line N of source S.
+/// Where a GLSL 4.50 compiler sees the first line that contains `part`, for one that obeys `#line N
+/// S` and one that, like Mesa, forgets S: the line after the directive is line N of source S.
 std::string placeOf(std::string_view part, const ShaderText& shader) {
     std::istringstream lines(shader.text);
-    std::size_t file = 0;
+    std::size_t source = 0;
     std::size_t number = 0;
     for (std::string line; std::getline(lines, line); ++number) {
         if (line.starts_with("#line ")) {
-            std::istringstream(line.substr(6)) >> number >> file;
+            std::istringstream(line.substr(6)) >> number >> source;
             --number;
         } else if (line.find(part) != std::string::npos) {
-            return shader.files.at(file) + ":" + std::to_string(number);
+            const std::string place = describePlace(source, number, shader.files);
+            EXPECT_EQ(describePlace(0, number, shader.files), place);
+            EXPECT_TRUE(place.starts_with(shader.files.at(source) + ":")) << place;
+            return place;
         }
     }
     return "nowhere";
@@ -204,9 +207,11 @@ TEST(TranslateLog, KnowsEveryDriversForm) {
               "voxelize/a.frag:7: error C1503: undefined variable");
     EXPECT_EQ(translateLog("ERROR: 1:3: 'y' : undeclared\nWARNING: 0:4: odd\n", files),
               "lamina/x.glsl:3: error: 'y' : undeclared\nvoxelize/a.frag:4: warning: odd\n");
+    // The source number is also in the line number, which Mesa reports reliably.
+    EXPECT_EQ(translateLog("0:100012(5): error: y", files), "lamina/x.glsl:12: error: y");
     // No place, or one of no file of ours.
     for (const char* line : {"error: linking failed", "2:1(1): error: y", "10: x", "1:x", "1(2: x",
-                             "99999999999999999999:1: x", "", "\n"})
+                             "99999999999999999999:1: x", "0:200001: x", "", "\n"})
         EXPECT_EQ(translateLog(line, files), line);
 }
 

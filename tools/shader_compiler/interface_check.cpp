@@ -1,5 +1,7 @@
 #include "interface_check.hpp"
 
+#include "gl/shader_source.hpp"
+
 #include <glslang/MachineIndependent/localintermediate.h>
 
 #include <algorithm>
@@ -29,8 +31,8 @@ public:
 };
 
 std::string placeOf(const glslang::TSourceLoc& location, std::span<const std::string> files) {
-    const auto file = static_cast<std::size_t>(location.string);
-    return (file < files.size() ? files[file] : files[0]) + ":" + std::to_string(location.line);
+    return gl::describePlace(static_cast<std::size_t>(location.string),
+                             static_cast<std::size_t>(location.line), files);
 }
 
 /// As in GLSL, without qualifiers. Members are spelled out: they must match too.
