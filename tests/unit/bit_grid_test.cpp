@@ -1,0 +1,158 @@
+#include <lamina/core/triangle_mesh.hpp>
+#include <lamina/grid/bit_grid.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+#include <tuple>
+
+namespace lamina {
+namespace {
+
+using testing::HasSubstr;
+
+GridTransform boxGrid(const glm::uvec3& counts, Axis axis = Axis::Z) {
+    return GridTransform::box({{0, 0, 0}, {1, 2, 3}}, counts, axis).value();
+}
+
+/// A grid with every third-or-so voxel set, and the set voxels.
+std::pair<BitGrid, std::set<std::tuple<unsigned, unsigned, unsigned>>>
+randomGrid(const GridTransform& transform) {
+    BitGrid grid = BitGrid::create(transform).value();
+    std::set<std::tuple<unsigned, unsigned, unsigned>> voxels;
+    std::mt19937 random(11);
+    const glm::uvec3 size = transform.size();
+    for (unsigned i = 0; i < size.x * size.y * size.z / 3; ++i) {
+        const glm::uvec3 voxel{random() % size.x, random() % size.y, random() % size.z};
+        grid.set(voxel);
+        voxels.emplace(voxel.x, voxel.y, voxel.z);
+    }
+    return {std::move(grid), std::move(voxels)};
+}
+
+TEST(BitGrid, SetsCountsAndVisitsEveryVoxelOnce) {
+    for (const std::uint32_t slices : {1u, 31u, 32u, 33u, 127u, 128u, 129u, 300u}) {
+        const auto [grid, voxels] = randomGrid(boxGrid({7, 5, slices}));
+        EXPECT_EQ(grid.count(), voxels.size());
+        EXPECT_EQ(grid.groupCount(), (slices + 127) / 128);
+        EXPECT_EQ(grid.words().size(), 7u * 5u * 4u * grid.groupCount());
+        std::set<std::tuple<unsigned, unsigned, unsigned>> visited;
+        grid.forEachSet([&](const glm::uvec3& voxel) {
+            EXPECT_TRUE(visited.emplace(voxel.x, voxel.y, voxel.z).second);
+            EXPECT_TRUE(grid.test(voxel));
+        });
+        EXPECT_EQ(visited, voxels);
+    }
+}
+
+TEST(BitGrid, ClearsVoxels) {
+    BitGrid grid = BitGrid::create(boxGrid({2, 2, 200})).value();
+    grid.set({1, 1, 150});
+    grid.set({1, 1, 151});
+    grid.set({1, 1, 150}, false);
+    EXPECT_EQ(grid.count(), 1u);
+    EXPECT_FALSE(grid.test({1, 1, 150}));
+}
+
+TEST(BitGrid, WordsStandAsInTheTexture) {
+    BitGrid grid = BitGrid::create(boxGrid({4, 3, 200})).value();
+    grid.set({2, 1, 128 + 32 + 5});
+    // Group 1, row 1, column 2, word 1.
+    EXPECT_EQ(grid.words()[((1 * 3 + 1) * 4 + 2) * 4 + 1], 1u << 5);
+}
+
+TEST(BitGrid, CountsNearerVoxels) {
+    const auto [grid, voxels] = randomGrid(boxGrid({3, 2, 300}));
+    for (std::uint32_t slice : {0u, 1u, 31u, 32u, 33u, 127u, 128u, 129u, 255u, 299u, 300u, 5000u}) {
+        std::uint32_t expected = 0;
+        for (const auto& [x, y, z] : voxels)
+            expected += x == 2 && y == 1 && z < slice ? 1 : 0;
+        EXPECT_EQ(grid.countNearer({2, 1}, slice), expected) << slice;
+    }
+}
+
+TEST(BitGrid, AnswersForWorldPoints) {
+    BitGrid grid = BitGrid::create(boxGrid({4, 4, 4})).value();
+    grid.set({3, 0, 2});
+    EXPECT_TRUE(grid.at({0.8, 0.1, 2.0}));
+    EXPECT_FALSE(grid.at({0.7, 0.1, 2.0}));
+    EXPECT_FALSE(grid.at({1.1, 0.1, 2.0})) << "outside the grid";
+    EXPECT_TRUE(grid.at(grid.transform().voxelCenter({3, 0, 2})));
+}
+
+TEST(BitGrid, Compares) {
+    BitGrid a = BitGrid::create(boxGrid({4, 4, 140})).value();
+    BitGrid b = a;
+    EXPECT_TRUE(compare(a, b)->equal());
+    EXPECT_EQ(compare(a, b)->iou(), 1.0);
+    a.set({0, 0, 0});
+    a.set({1, 2, 135});
+    b.set({1, 2, 135});
+    b.set({3, 3, 64});
+    b.set({3, 3, 65});
+    const BitGridComparison found = compare(a, b).value();
+    EXPECT_EQ(found.both, 1u);
+    EXPECT_EQ(found.onlyFirst, 1u);
+    EXPECT_EQ(found.onlySecond, 2u);
+    EXPECT_DOUBLE_EQ(found.iou(), 0.25);
+    const auto unequal = compare(a, BitGrid::create(boxGrid({4, 4, 141})).value());
+    ASSERT_FALSE(unequal);
+    EXPECT_THAT(unequal.error().text, HasSubstr("4 x 4 x 140"));
+}
+
+TEST(BitGrid, ReorientedGridsHoldTheSameWorldVoxels) {
+    for (const Axis from : {Axis::X, Axis::Y, Axis::Z})
+        for (const Axis to : {Axis::X, Axis::Y, Axis::Z}) {
+            const auto [grid, voxels] = randomGrid(boxGrid({5, 6, 7}, from));
+            const BitGrid turned = grid.reoriented(to).value();
+            EXPECT_EQ(turned.transform().boxAxis(), to);
+            EXPECT_EQ(turned.count(), grid.count());
+            grid.forEachSet([&](const glm::uvec3& voxel) {
+                EXPECT_TRUE(turned.at(grid.transform().voxelCenter(voxel)));
+            });
+        }
+    const GridTransform camera =
+        GridTransform::camera(GridCamera{.near = 1, .far = 2}, {2, 2, 2}).value();
+    EXPECT_THAT(BitGrid::create(camera)->reoriented(Axis::X).error().text, HasSubstr("box grid"));
+}
+
+TEST(BitGrid, TooLargeForTheHostIsAnError) {
+    const auto huge = BitGrid::create(boxGrid({4000000000u, 4000000000u, 4000000000u}));
+    ASSERT_FALSE(huge);
+    EXPECT_EQ(huge.error().code, ErrorCode::OutOfMemory);
+    EXPECT_THAT(huge.error().text, HasSubstr("MiB"));
+}
+
+TEST(TriangleMesh, BoundsAndValidation) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {9, 9, 9}};
+    EXPECT_TRUE(mesh.bounds().isEmpty());
+    EXPECT_THAT(validate(mesh).error().text, HasSubstr("found none"));
+    mesh.triangles = {{0, 1, 2}};
+    EXPECT_TRUE(validate(mesh));
+    EXPECT_EQ(mesh.bounds().max, glm::dvec3(1, 2, 0)) << "vertex 3 belongs to no triangle";
+    mesh.normals.resize(3);
+    EXPECT_THAT(validate(mesh).error().text, HasSubstr("one normal a vertex (4), found 3"));
+    mesh.normals.clear();
+    mesh.colors.resize(5);
+    EXPECT_THAT(validate(mesh).error().text, HasSubstr("one colour a vertex (4), found 5"));
+}
+
+TEST(Result, ValuesAndErrors) {
+    const Result<int> value = 3;
+    EXPECT_TRUE(value);
+    EXPECT_EQ(*value, 3);
+    Result<std::string> error = Error{ErrorCode::NotFound, "text"};
+    EXPECT_FALSE(error);
+    EXPECT_EQ(error.error().text, "text");
+    error = std::string("now a value");
+    EXPECT_EQ(error->size(), 11u);
+    EXPECT_TRUE(Result<void>());
+    EXPECT_EQ(Result<void>(Error{ErrorCode::DeviceLimit, ""}).error().code, ErrorCode::DeviceLimit);
+    EXPECT_EQ(name(ErrorCode::InvalidMesh), "InvalidMesh");
+}
+
+} // namespace
+} // namespace lamina
