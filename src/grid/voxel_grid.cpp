@@ -56,7 +56,10 @@ Result<void> VoxelGrid::resize(const GridTransform& transform) {
     }
     if (!mImpl->transform || !(*mImpl->transform == transform)) {
         const GridBlock block = makeGridBlock(transform);
-        mImpl->device->gl.NamedBufferSubData(mImpl->uniforms.id(), 0, sizeof block, &block);
+        const std::size_t used =
+            offsetof(GridBlock, boundaries) + transform.sliceBoundaries().size() * sizeof(float);
+        mImpl->device->gl.NamedBufferSubData(mImpl->uniforms.id(), 0,
+                                             static_cast<GLsizeiptr>(used), &block);
     }
     mImpl->transform = transform;
     return {};
