@@ -45,8 +45,8 @@ struct MeshReadOptions {
 /// Reads a mesh file: polygons become triangles (concave ones too), normals unit vectors.
 ///
 /// The result passes validate(): at least one triangle, indices in range, finite positions. A
-/// vertex that no triangle uses keeps its index; if it is not finite it is moved to the origin. A
-/// broken file is refused as a whole: nothing is guessed, dropped or repaired.
+/// vertex that no triangle uses keeps its index; if it is not finite it is moved to the origin.
+/// Normals without a direction are computed. A broken file is refused as a whole.
 ///
 /// Errors, each naming the file, the line or byte, what was expected and what was found:
 /// NotFound; UnknownFormat (extension); InputOutput (not a regular file, unreadable); InvalidFile;
