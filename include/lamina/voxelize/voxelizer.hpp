@@ -23,12 +23,20 @@ enum class Coverage : std::uint8_t {
     /// For each column whose centre the triangle covers, every slice that the part of the triangle
     /// inside the column spans. No holes along the depth.
     Filled,
+    /// Every voxel whose closed cube the triangle touches: nothing is missed. A face on the boundary
+    /// of two voxels sets both.
+    Conservative,
+    /// Thin and gap-free [Schwarz & Seidel 2010]: every voxel whose crosshair, the segments through
+    /// its centre along the axes and what they span, the triangle touches. A 6-connected path across
+    /// the surface meets a set voxel. Subset of Conservative.
+    Separating6,
 };
 
 /// How voxels are made.
 enum class Backend : std::uint8_t {
     Automatic, ///< Picks by what is asked and what the device can do.
     Slicemap,  ///< Bits by logic op, one pass of the geometry per 128 slices ([ED06] 2.1-2.3).
+    Overlap,   ///< Exact triangle/voxel overlap by compute shaders; orthographic, linear slices.
 };
 
 [[nodiscard]] LAMINA_API std::string_view name(Coverage coverage); ///< "sampled"
@@ -45,7 +53,9 @@ struct VoxelizerCapabilities {
     std::uint32_t maxSlices = 0;     ///< Linear distribution.
     std::uint32_t slicesPerPass = 0; ///< Slices made by one pass of the geometry.
     bool perspective = false;        ///< Perspective grids.
+    bool anyDistribution = false;    ///< Logarithmic and custom slices.
     bool drawSources = false;        ///< Geometry by DrawSource.
+    VoxelStore store = VoxelStore::Texture; ///< What voxelize() makes of the grid.
 };
 
 /// What one voxelize() call did; known without waiting for the GPU.
