@@ -2,7 +2,7 @@
 //
 // One invocation owns one triangle:
 //   1. fetch it and clip its box to the part of the grid;
-//   2. if it spans more than LAMINA_OVERLAP_SMALL_VOXELS, enqueue it for overlap_large.comp;
+//   2. if it is not small (LAMINA_OVERLAP_SMALL_VOXELS), enqueue it for overlap_large.comp;
 //   3. else work out its inequalities and, row by row and column by column, the slices they leave.
 // Floats suffice: coordinates are relative to the triangle's own voxel, formed in double precision.
 // Degenerate triangles (segments, points) need no special case.
@@ -45,7 +45,9 @@ void main() {
     LaminaVoxelBox box = laminaVoxelsAround(low, high, LAMINA_OVERLAP_ALLOWANCE);
     if (any(greaterThan(box.first, box.last)))
         return;
-    if (any(greaterThan(high - low, dvec3(LAMINA_OVERLAP_SMALL_VOXELS)))) {
+    ivec2 columns = box.last.xy - box.first.xy + 1;
+    if (any(greaterThan(high - low, dvec3(LAMINA_OVERLAP_SMALL_VOXELS))) ||
+        columns.x * columns.y > LAMINA_OVERLAP_SMALL_COLUMNS) {
         laminaEnqueue(triangle, box);
         return;
     }

@@ -1,9 +1,9 @@
 // Sets every voxel that the enqueued triangles of one class meet.
 //
-// Work groups (i, g, k) for g in [0, groups) own triangle k * LAMINA_OVERLAP_MAX_GROUPS + i of the
-// queue. Group g takes every groups-th block of 8 x 8 columns of the triangle's box, an invocation a
-// column, so that a triangle of any size is shared and no invocation loops for long. Doubles
-// throughout: coordinates relative to one corner of a large triangle are too large for floats.
+// Several work groups, along y, own one triangle. Each takes every groups-th block of 8 x 8 columns of
+// the triangle's box, an invocation a column, so that a triangle of any size is shared and no
+// invocation loops for long. Doubles throughout: coordinates relative to one corner of a large triangle
+// are too large for floats.
 // permute LAMINA_COVERAGE = LAMINA_COVERAGE_CONSERVATIVE LAMINA_COVERAGE_SEPARATING6
 #define Real double
 #define Real2 dvec2
@@ -16,10 +16,9 @@ const double kVertical = 1.0e-12lf;
 layout(location = 0) uniform int laminaClass;
 
 void main() {
-    uint slot = gl_WorkGroupID.z * uint(LAMINA_OVERLAP_MAX_GROUPS) + gl_WorkGroupID.x;
-    if (slot >= laminaClasses[laminaClass].count)
+    uint triangle;
+    if (!laminaDequeue(laminaClass, triangle))
         return;
-    uint triangle = laminaQueue[uint(laminaClass * LAMINA_OVERLAP_CHUNK_TRIANGLES) + slot];
     dvec3 corners[3];
     if (!laminaFetchTriangle(triangle, corners))
         return;
@@ -36,19 +35,18 @@ void main() {
     LaminaOverlapTriangle t = laminaOverlapTriangle(box.first, local, normal);
     ivec3 last = box.last - box.first;
     ivec2 counts = laminaBlockCounts(box);
-    int column = int(gl_LocalInvocationIndex);
     for (int block = int(gl_WorkGroupID.y); block < counts.x * counts.y; block += int(gl_NumWorkGroups.y)) {
-        int x = (block % counts.x) * 8 + (column & 7);
-        int y = (block / counts.x) * 8 + (column >> 3);
-        dvec2 columns = laminaRowColumns(t, double(y));
-        if (x > last.x || y > last.y || double(x) < columns.x || double(x) > columns.y)
+        ivec2 column = laminaColumnOfBlock(block, counts);
+        dvec2 place = dvec2(column);
+        dvec2 columns = laminaRowColumns(t, place.y);
+        if (any(greaterThan(column, last.xy)) || place.x < columns.x || place.x > columns.y)
             continue;
-        dvec2 slices = laminaColumnSlices(t, double(x), double(y));
-        dvec2 rowSlices = laminaRowSlices(t, double(y));
+        dvec2 slices = laminaColumnSlices(t, place.x, place.y);
+        dvec2 rowSlices = laminaRowSlices(t, place.y);
         // Compared as doubles: the bounds of steep edges are beyond any int.
         double front = ceil(max(max(slices.x, rowSlices.x), 0.0lf));
         double back = floor(min(min(slices.y, rowSlices.y), double(last.z)));
         if (front <= back)
-            laminaSetSlices(x + t.base.x, y + t.base.y, int(front) + t.base.z, int(back) + t.base.z);
+            laminaSetSlices(column.x + t.base.x, column.y + t.base.y, int(front) + t.base.z, int(back) + t.base.z);
     }
 }

@@ -23,3 +23,19 @@ void laminaEnqueue(uint triangle, LaminaVoxelBox box) {
     atomicMax(laminaClasses[queue].groupsX, min(slot + 1u, uint(LAMINA_OVERLAP_MAX_GROUPS)));
     atomicMax(laminaClasses[queue].groupsZ, slot / uint(LAMINA_OVERLAP_MAX_GROUPS) + 1u);
 }
+
+// The triangle of this work group: groups (i, g, k) take number k * LAMINA_OVERLAP_MAX_GROUPS + i.
+bool laminaDequeue(int queue, out uint triangle) {
+    uint slot = gl_WorkGroupID.z * uint(LAMINA_OVERLAP_MAX_GROUPS) + gl_WorkGroupID.x;
+    triangle = 0u;
+    if (slot >= laminaClasses[queue].count)
+        return false;
+    triangle = laminaQueue[uint(queue * LAMINA_OVERLAP_CHUNK_TRIANGLES) + slot];
+    return true;
+}
+
+// The column of this invocation in a block, relative to the box.
+ivec2 laminaColumnOfBlock(int block, ivec2 counts) {
+    int column = int(gl_LocalInvocationIndex);
+    return ivec2(block % counts.x, block / counts.x) * 8 + ivec2(column & 7, column >> 3);
+}

@@ -38,9 +38,13 @@ bool laminaFetchTriangle(uint triangle, out dvec3 corners[3]) {
                                            laminaVertexWords[word + 2u]));
         if (any(isnan(local)) || any(isinf(local)))
             return false;
-        dvec4 position = dvec4(dvec3(local), 1.0lf);
-        corners[i] = dvec3(dot(laminaOverlap.localToGrid[0], position), dot(laminaOverlap.localToGrid[1], position),
-                           dot(laminaOverlap.localToGrid[2], position));
+        dvec3 position = dvec3(local);
+        // The same numbers in every program and for every triangle of the vertex.
+        precise dvec3 corner = dvec3(laminaOverlap.localToGrid[0].w, laminaOverlap.localToGrid[1].w, laminaOverlap.localToGrid[2].w);
+        for (int row = 0; row < 3; ++row)
+            corner[row] += laminaOverlap.localToGrid[row].x * position.x + laminaOverlap.localToGrid[row].y * position.y +
+                           laminaOverlap.localToGrid[row].z * position.z;
+        corners[i] = corner;
     }
     return true;
 }

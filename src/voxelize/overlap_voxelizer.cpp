@@ -4,6 +4,7 @@
 #include "gl/state_guard.hpp"
 #include "voxelize/overlap_grid.hpp"
 #include "voxelize/overlap_source.hpp"
+#include "voxelize/solid_fill.hpp"
 
 #include <array>
 #include <cstring>
@@ -13,11 +14,6 @@ namespace lamina {
 namespace {
 
 constexpr std::uint64_t kChunkTriangles = LAMINA_OVERLAP_CHUNK_TRIANGLES;
-
-std::string_view coverageDefine(Coverage coverage) {
-    return coverage == Coverage::Conservative ? "LAMINA_COVERAGE_CONSERVATIVE"
-                                              : "LAMINA_COVERAGE_SEPARATING6";
-}
 
 /// What one dispatch binds besides the grid.
 struct Chunk {
@@ -32,6 +28,7 @@ public:
         : mDevice(std::move(device))
         , mCoverage(coverage)
         , mSources(mDevice)
+        , mSolid(mDevice)
         , mConstants(gl::Buffer::create(mDevice, "lamina overlap constants")) {}
 
     /// Builds what every call needs.
@@ -42,8 +39,13 @@ public:
     [[nodiscard]] Result<VoxelizeStats> voxelize(std::span<const GeometrySource> sources,
                                                  const GridTransform& transform,
                                                  VoxelGrid& out) override;
+    [[nodiscard]] Result<SolidReport> downloadSolidReport() const override {
+        return isSolid() ? mSolid.download() : Voxelizer::downloadSolidReport();
+    }
 
 private:
+    [[nodiscard]] bool isSolid() const { return mCoverage == Coverage::Solid; }
+    [[nodiscard]] Result<GLuint> program(const char* thin, const char* parity) const;
     [[nodiscard]] std::vector<Chunk> chunks(std::span<const OverlapSource> sources) const;
     void uploadConstants(std::span<const OverlapSource> sources, std::span<const Chunk> chunks,
                          std::span<const GridPart> parts, const GridTransform& transform);
@@ -53,6 +55,7 @@ private:
     std::shared_ptr<gl::DeviceState> mDevice;
     Coverage mCoverage;
     OverlapSources mSources;
+    SolidFill mSolid;
     gl::Buffer mConstants;
     gl::Buffer mQueue;
     GLuint mProgram = 0;
@@ -61,21 +64,27 @@ private:
     std::size_t mConstantStride = 0;
 };
 
+Result<GLuint> OverlapVoxelizer::program(const char* thin, const char* parity) const {
+    gl::ProgramDesc desc{"lamina overlap", {{GL_COMPUTE_SHADER, isSolid() ? parity : thin}}, {}};
+    if (!isSolid())
+        desc.defines = {{"LAMINA_COVERAGE", mCoverage == Coverage::Conservative
+                                                ? "LAMINA_COVERAGE_CONSERVATIVE"
+                                                : "LAMINA_COVERAGE_SEPARATING6"}};
+    return gl::findOrBuildProgram(*mDevice, desc);
+}
+
 Result<void> OverlapVoxelizer::initialize() {
-    const std::string define(coverageDefine(mCoverage));
-    auto small = gl::findOrBuildProgram(*mDevice, {"lamina overlap",
-                                                   {{GL_COMPUTE_SHADER, "voxelize/overlap.comp"}},
-                                                   {{"LAMINA_COVERAGE", define}}});
+    auto small = program("voxelize/overlap.comp", "voxelize/parity.comp");
     if (!small)
         return small.error();
-    auto large =
-        gl::findOrBuildProgram(*mDevice, {"lamina overlap large",
-                                          {{GL_COMPUTE_SHADER, "voxelize/overlap_large.comp"}},
-                                          {{"LAMINA_COVERAGE", define}}});
+    auto large = program("voxelize/overlap_large.comp", "voxelize/parity_large.comp");
     if (!large)
         return large.error();
     mProgram = *small;
     mLargeProgram = *large;
+    if (isSolid())
+        if (auto ready = mSolid.initialize(); !ready)
+            return ready;
     constexpr std::uint64_t kQueueBytes =
         LAMINA_OVERLAP_CLASS_COUNT *
         (sizeof(shared::LaminaOverlapClass) + kChunkTriangles * sizeof(std::uint32_t));
@@ -175,6 +184,11 @@ Result<VoxelizeStats> OverlapVoxelizer::voxelize(std::span<const GeometrySource>
     auto prepared = mSources.prepare(sources, transform, stats);
     if (!prepared)
         return prepared.error();
+    if (isSolid())
+        if (auto reserved =
+                mSolid.reserve(std::uint64_t{transform.size().x} * transform.size().y);
+            !reserved)
+            return reserved.error();
     if (auto resized = out.resize(transform, VoxelStore::Buffer); !resized)
         return resized.error();
 
@@ -189,12 +203,16 @@ Result<VoxelizeStats> OverlapVoxelizer::voxelize(std::span<const GeometrySource>
     const GLuint queue = mQueue.id();
     gl.BindBuffersBase(GL_SHADER_STORAGE_BUFFER, LAMINA_OVERLAP_QUEUE_BINDING, 1, &queue);
     gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, queue);
+    if (isSolid())
+        mSolid.begin();
     std::size_t index = 0;
     for (const GridPart& part : *parts) {
         gl.BindBuffersRange(GL_SHADER_STORAGE_BUFFER, LAMINA_OVERLAP_WORDS_BINDING, 1, &words,
                             &part.offsetBytes, &part.sizeBytes);
         for (const Chunk& chunk : allChunks)
             dispatch((*prepared)[chunk.source], chunk, index++);
+        if (isSolid() && !allChunks.empty())
+            mSolid.fill(part);
     }
     gl.MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
                      GL_SHADER_STORAGE_BARRIER_BIT);

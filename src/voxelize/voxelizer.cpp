@@ -17,6 +17,8 @@ std::string_view name(Coverage coverage) {
         return "conservative";
     case Coverage::Separating6:
         return "separating6";
+    case Coverage::Solid:
+        return "solid";
     }
     return "unknown";
 }
@@ -49,12 +51,20 @@ Choice choose(Coverage coverage) {
                 "it decides per column centre, for every projection and slice distribution"};
     case Coverage::Conservative:
     case Coverage::Separating6:
+        return {Backend::Overlap, "it tests triangles against voxels exactly"};
+    case Coverage::Solid:
         break;
     }
-    return {Backend::Overlap, "it tests triangles against voxels exactly"};
+    return {Backend::Overlap, "it counts crossings exactly, in one pass of the geometry"};
 }
 
 } // namespace
+
+Result<SolidReport> Voxelizer::downloadSolidReport() const {
+    return Error{ErrorCode::InvalidArgument,
+                 "solid report: expected a voxelizer of solid coverage that has voxelized, found "
+                 "none; voxelize with Coverage::Solid first"};
+}
 
 Result<std::unique_ptr<Voxelizer>> Voxelizer::create(const Device& device,
                                                      const VoxelizerDesc& desc) {

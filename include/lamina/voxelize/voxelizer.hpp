@@ -30,6 +30,9 @@ enum class Coverage : std::uint8_t {
     /// its centre along the axes and what they span, the triangle touches. A 6-connected path across
     /// the surface meets a set voxel. Subset of Conservative.
     Separating6,
+    /// Every voxel whose centre lies inside: an odd number of triangles crosses the column's centre
+    /// line beyond it. For closed meshes of any orientation; see downloadSolidReport().
+    Solid,
 };
 
 /// How voxels are made.
@@ -56,6 +59,13 @@ struct VoxelizerCapabilities {
     bool anyDistribution = false;    ///< Logarithmic and custom slices.
     bool drawSources = false;        ///< Geometry by DrawSource.
     VoxelStore store = VoxelStore::Texture; ///< What voxelize() makes of the grid.
+};
+
+/// How far Coverage::Solid could tell inside from outside.
+struct SolidReport {
+    /// Columns whose centre line an odd number of triangles crosses. There the mesh is not closed,
+    /// and the column is filled up to the nearest crossing without a partner. 0 for closed meshes.
+    std::uint64_t oddColumns = 0;
 };
 
 /// What one voxelize() call did; known without waiting for the GPU.
@@ -98,6 +108,10 @@ public:
     [[nodiscard]] virtual Result<VoxelizeStats> voxelize(std::span<const GeometrySource> sources,
                                                          const GridTransform& transform,
                                                          VoxelGrid& out) = 0;
+
+    /// What the last voxelize() with Coverage::Solid found. Waits for the GPU.
+    /// Errors: InvalidArgument (another coverage, or nothing voxelized yet).
+    [[nodiscard]] virtual Result<SolidReport> downloadSolidReport() const;
 
 protected:
     Voxelizer() = default;

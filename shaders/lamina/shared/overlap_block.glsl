@@ -10,11 +10,12 @@
 // Triangles of one dispatch; an invocation each.
 #define LAMINA_OVERLAP_CHUNK_TRIANGLES 262144
 
-// Triangles that span at most this many voxels along each axis are done by one invocation; the
-// others by work groups, each taking blocks of columns, and enqueued by their number of blocks:
-// class c has up to 64 * 16^c blocks (the last class any number) and 16^c work groups a triangle.
-// So every group has work for it, and none loops for long.
-#define LAMINA_OVERLAP_SMALL_VOXELS 12
+// Triangles that span at most so many voxels along each axis, and whose box so many columns, are
+// done by one invocation; the others by work groups, each taking blocks of columns, and enqueued by
+// their number of blocks: class c has up to 64 * 16^c blocks (the last class any number) and 16^c
+// work groups a triangle. So every group has work for it, and none loops for long.
+#define LAMINA_OVERLAP_SMALL_VOXELS 32
+#define LAMINA_OVERLAP_SMALL_COLUMNS 256
 #define LAMINA_OVERLAP_CLASS_COUNT 4
 #define LAMINA_OVERLAP_CLASS_BLOCKS 64
 #define LAMINA_OVERLAP_CLASS_FACTOR 16
@@ -38,7 +39,8 @@
 #define LAMINA_OVERLAP_VERTEX_BINDING 1
 #define LAMINA_OVERLAP_INDEX_BINDING 2
 #define LAMINA_OVERLAP_QUEUE_BINDING 3
-#define LAMINA_OVERLAP_BINDING_COUNT 4
+#define LAMINA_OVERLAP_COLUMNS_BINDING 4
+#define LAMINA_OVERLAP_BINDING_COUNT 5
 
 // One dispatch: a chunk of a source's triangles, into the part of the grid that one storage binding
 // holds.
