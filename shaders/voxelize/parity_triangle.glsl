@@ -19,7 +19,7 @@ LaminaVoxelBox laminaColumnsAround(dvec3 corners[3]) {
 }
 
 bool laminaParityTriangle(dvec3 corners[3], out LaminaColumnTriangle triangle) {
-    triangle.depthRange = dvec2(0.0lf);
+    triangle.depthRange = dvec2(min(corners[0].z, min(corners[1].z, corners[2].z)), max(corners[0].z, max(corners[1].z, corners[2].z)));
     dvec2 p[3] = dvec2[](corners[0].xy, corners[1].xy, corners[2].xy);
     return laminaSetUpTriangle(p, dvec3(corners[0].z, corners[1].z, corners[2].z), triangle);
 }
@@ -30,7 +30,8 @@ void laminaToggle(LaminaColumnTriangle triangle, int x, int y) {
     dvec2 center = dvec2(x, y) + 0.5lf;
     if (!laminaOwnsPoint(triangle, center))
         return;
-    double slice = ceil(laminaPlaneValue(triangle, center) - 0.5lf) - 1.0lf;
+    double crossing = clamp(laminaPlaneValue(triangle, center), triangle.depthRange.x, triangle.depthRange.y);
+    double slice = ceil(crossing - 0.5lf) - 1.0lf;
     int last = int(clamp(slice, double(laminaOverlap.low.z - 1), double(laminaOverlap.high.z)));
     if (last >= laminaOverlap.low.z) {
         atomicXor(laminaWords[laminaWordIndex(x, y, last >> 5)], 1u << uint(last & 31));

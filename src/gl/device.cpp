@@ -36,7 +36,8 @@ DeviceLimits readLimits(const GladGLContext& gl) {
     limits.uniformBufferOffsetAlignment =
         std::max(limit(gl, GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT), 1u);
     limits.maxTextureBufferTexels = limit(gl, GL_MAX_TEXTURE_BUFFER_SIZE);
-    // Some drivers do not enforce it: a binding may be larger, and shaders then lose what is beyond.
+    // Some drivers do not enforce it: a binding may be larger, and shaders then lose what is
+    // beyond.
     GLint64 storageBlock = 0;
     gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storageBlock);
     limits.maxStorageBlockBytes = static_cast<std::uint64_t>(std::max<GLint64>(storageBlock, 0));

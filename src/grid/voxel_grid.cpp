@@ -89,8 +89,8 @@ Result<void> VoxelGrid::resize(const GridTransform& transform) {
 
 Result<void> VoxelGrid::resize(const GridTransform& transform, VoxelStore store) {
     const glm::uvec3 size = transform.size();
-    const glm::uvec3 layered{
-        size.x, size.y, (size.z + BitGrid::kSlicesPerGroup - 1) / BitGrid::kSlicesPerGroup};
+    const glm::uvec3 layered{size.x, size.y,
+                             (size.z + BitGrid::kSlicesPerGroup - 1) / BitGrid::kSlicesPerGroup};
     if (transform.sliceBoundaries().size() > LAMINA_MAX_SLICE_BOUNDARIES)
         return Error{ErrorCode::DeviceLimit,
                      "voxel grid: needs " + std::to_string(size.z) +
@@ -110,8 +110,8 @@ Result<void> VoxelGrid::resize(const GridTransform& transform, VoxelStore store)
         const GridBlock block = makeGridBlock(transform);
         const std::size_t used =
             offsetof(GridBlock, boundaries) + transform.sliceBoundaries().size() * sizeof(float);
-        mImpl->device->gl.NamedBufferSubData(mImpl->uniforms.id(), 0,
-                                             static_cast<GLsizeiptr>(used), &block);
+        mImpl->device->gl.NamedBufferSubData(mImpl->uniforms.id(), 0, static_cast<GLsizeiptr>(used),
+                                             &block);
     }
     mImpl->transform = transform;
     return {};

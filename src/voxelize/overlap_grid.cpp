@@ -31,15 +31,13 @@ GridPart makePart(std::uint64_t firstTexel, std::uint64_t texels, std::uint64_t 
 } // namespace
 
 std::uint32_t maxOverlapColumns(const gl::DeviceState& device) {
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(
-        device.limits.maxTextureBufferTexels, maxBindingTexels(device)));
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(device.limits.maxTextureBufferTexels, maxBindingTexels(device)));
 }
 
 std::uint32_t maxOverlapSlices(const gl::DeviceState& device) {
-    return static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(std::uint64_t{device.limits.maxTextureBufferTexels} *
-                                    BitGrid::kSlicesPerGroup,
-                                1u << 24u));
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(
+        std::uint64_t{device.limits.maxTextureBufferTexels} * BitGrid::kSlicesPerGroup, 1u << 24u));
 }
 
 Result<std::vector<GridPart>> gridParts(const gl::DeviceState& device,
@@ -62,16 +60,15 @@ Result<std::vector<GridPart>> gridParts(const gl::DeviceState& device,
                          std::to_string(maxOverlapColumns(device)) + " x " +
                          std::to_string(maxOverlapSlices(device)) + "; use a smaller grid"};
 
-    const std::uint64_t layers =
-        (size.z + BitGrid::kSlicesPerGroup - 1) / BitGrid::kSlicesPerGroup;
+    const std::uint64_t layers = (size.z + BitGrid::kSlicesPerGroup - 1) / BitGrid::kSlicesPerGroup;
     const std::uint64_t layerTexels = std::uint64_t{size.x} * size.y;
     const std::uint64_t alignment = device.limits.storageBufferOffsetAlignment;
     // All but the first part lose up to one alignment to what stands before them.
     std::uint64_t room = maxBindingTexels(device);
     if (layers * layerTexels > room)
         room -= std::min(room, alignment / kTexelBytes);
-    const std::uint64_t layersPerPart =
-        std::min<std::uint64_t>(room / layerTexels, kOverlapSlicesPerPart / BitGrid::kSlicesPerGroup);
+    const std::uint64_t layersPerPart = std::min<std::uint64_t>(
+        room / layerTexels, kOverlapSlicesPerPart / BitGrid::kSlicesPerGroup);
     const std::uint64_t rowsPerPart =
         layersPerPart > 0 ? size.y : std::max<std::uint64_t>(room / size.x, 1);
     const std::uint64_t step = std::max<std::uint64_t>(layersPerPart, 1);
@@ -84,10 +81,10 @@ Result<std::vector<GridPart>> gridParts(const gl::DeviceState& device,
             GridPart part = makePart(layer * layerTexels + row * size.x,
                                      layerCount * rowCount * size.x, alignment);
             part.low = {0, row, layer * BitGrid::kSlicesPerGroup};
-            part.high = {size.x - 1, row + rowCount - 1,
-                         std::min<std::uint64_t>((layer + layerCount) * BitGrid::kSlicesPerGroup,
-                                                 size.z) -
-                             1};
+            part.high = {
+                size.x - 1, row + rowCount - 1,
+                std::min<std::uint64_t>((layer + layerCount) * BitGrid::kSlicesPerGroup, size.z) -
+                    1};
             parts.push_back(part);
         }
     return parts;

@@ -82,8 +82,8 @@ void bindRange(const gl::DeviceState& device, GLuint binding, GLuint buffer, con
 
 } // namespace
 
-void OverlapSource::write(std::uint64_t firstTriangle, std::uint64_t count,
-                          std::uint64_t alignment, shared::LaminaOverlapConstants& block) const {
+void OverlapSource::write(std::uint64_t firstTriangle, std::uint64_t count, std::uint64_t alignment,
+                          shared::LaminaOverlapConstants& block) const {
     const glm::dmat4 rows = glm::transpose(localToGrid);
     for (int row = 0; row < 3; ++row)
         block.localToGrid[row] = rows[row];
@@ -139,13 +139,15 @@ Result<std::vector<OverlapSource>> OverlapSources::prepare(std::span<const Geome
             return program.error();
         programs[i] = *program;
     }
+    if (std::ranges::any_of(programs, [](GLuint program) { return program != 0; }))
+        if (auto free = mCapture.checkHost(); !free)
+            return free.error();
     for (std::size_t i = 0; i < sources.size(); ++i) {
         if (programs[i] == 0)
             continue;
         const auto* view = std::get_if<MeshView>(&sources[i]);
-        auto captured =
-            view ? mCapture.capture(i, *view, programs[i])
-                 : mCapture.capture(i, std::get<DrawSource>(sources[i]), programs[i]);
+        auto captured = view ? mCapture.capture(i, *view, programs[i])
+                             : mCapture.capture(i, std::get<DrawSource>(sources[i]), programs[i]);
         if (!captured)
             return captured.error();
         prepared[i].view = viewOf(*captured);

@@ -185,8 +185,7 @@ Result<VoxelizeStats> OverlapVoxelizer::voxelize(std::span<const GeometrySource>
     if (!prepared)
         return prepared.error();
     if (isSolid())
-        if (auto reserved =
-                mSolid.reserve(std::uint64_t{transform.size().x} * transform.size().y);
+        if (auto reserved = mSolid.reserve(std::uint64_t{transform.size().x} * transform.size().y);
             !reserved)
             return reserved.error();
     if (auto resized = out.resize(transform, VoxelStore::Buffer); !resized)
@@ -195,6 +194,7 @@ Result<VoxelizeStats> OverlapVoxelizer::voxelize(std::span<const GeometrySource>
     const std::vector<Chunk> allChunks = chunks(*prepared);
     const GladGLContext& gl = mDevice->gl;
     const gl::ComputeStateGuard guard(*mDevice, 1, LAMINA_OVERLAP_BINDING_COUNT);
+    const gl::PixelUnpackGuard unpackGuard(*mDevice); // clears of buffers depend on it
     uploadConstants(*prepared, allChunks, *parts, transform);
     // The host's shaders may have written the vertices, or read the grid's words.
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -48,6 +48,16 @@ Result<GLuint> TriangleCapture::meshProgram() const {
         *mDevice, {"lamina capture", {{GL_VERTEX_SHADER, "voxelize/capture_mesh.vert"}}, {}});
 }
 
+Result<void> TriangleCapture::checkHost() const {
+    GLboolean active = GL_FALSE;
+    mDevice->gl.GetBooleanv(GL_TRANSFORM_FEEDBACK_ACTIVE, &active);
+    if (active)
+        return Error{ErrorCode::InvalidArgument,
+                     "voxelize: expected no active transform feedback for sources that a compute "
+                     "backend captures, found one of the host; end it before the call"};
+    return {};
+}
+
 Result<CapturedTriangles> TriangleCapture::capture(std::size_t slot, const DrawSource& source,
                                                    GLuint program) {
     const auto draw = [&](gl::RasterStateGuard& guard) {
@@ -87,11 +97,10 @@ Result<void> TriangleCapture::reserve(std::size_t slot, std::uint64_t triangles)
         mBuffers.resize(slot + 1);
     if (capacity(slot) >= triangles)
         return {};
-    auto buffer =
-        gl::createBuffer(mDevice, triangles * kTriangleBytes, nullptr, 0,
-                         "voxelize: source " + std::to_string(slot) + ", capture of " +
-                             std::to_string(triangles) + " triangles",
-                         "lamina capture");
+    auto buffer = gl::createBuffer(mDevice, triangles * kTriangleBytes, nullptr, 0,
+                                   "voxelize: source " + std::to_string(slot) + ", capture of " +
+                                       std::to_string(triangles) + " triangles",
+                                   "lamina capture");
     if (!buffer)
         return buffer.error();
     mBuffers[slot] = std::move(*buffer);
@@ -101,7 +110,10 @@ Result<void> TriangleCapture::reserve(std::size_t slot, std::uint64_t triangles)
 void TriangleCapture::run(std::size_t slot, GLuint program, const Draw& draw) {
     const GladGLContext& gl = mDevice->gl;
     const gl::Buffer& buffer = mBuffers[slot];
-    gl.ClearNamedBufferData(buffer.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &kUnused);
+    {
+        const gl::PixelUnpackGuard unpack(*mDevice);
+        gl.ClearNamedBufferData(buffer.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &kUnused);
+    }
     gl::RasterStateGuard guard(*mDevice, 2);
     gl.Enable(GL_RASTERIZER_DISCARD);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, mFramebuffer.id());
@@ -116,9 +128,9 @@ void TriangleCapture::run(std::size_t slot, GLuint program, const Draw& draw) {
 
 bool TriangleCapture::isFull(std::size_t slot) const {
     std::array<GLuint, 9> last{};
-    mDevice->gl.GetNamedBufferSubData(
-        mBuffers[slot].id(), static_cast<GLintptr>((capacity(slot) - 1) * kTriangleBytes),
-        sizeof last, last.data());
+    mDevice->gl.GetNamedBufferSubData(mBuffers[slot].id(),
+                                      static_cast<GLintptr>((capacity(slot) - 1) * kTriangleBytes),
+                                      sizeof last, last.data());
     return !std::ranges::all_of(last, [](GLuint word) { return word == kUnused; });
 }
 

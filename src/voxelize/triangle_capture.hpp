@@ -17,8 +17,8 @@ struct CapturedTriangles {
     std::uint64_t capacity = 0; ///< Triangles; those that were not drawn have NaN positions.
 };
 
-/// Runs vertex stages and keeps the triangles they make, by transform feedback. No queries: the host
-/// may have its own active. Buffers are kept, one a slot, and reused.
+/// Runs vertex stages and keeps the triangles they make, by transform feedback. No queries: the
+/// host may have its own active. Buffers are kept, one a slot, and reused.
 class TriangleCapture {
 public:
     explicit TriangleCapture(std::shared_ptr<gl::DeviceState> device);
@@ -27,6 +27,11 @@ public:
     /// Errors: ShaderError.
     [[nodiscard]] Result<GLuint> program(const DrawSource& source) const;
     [[nodiscard]] Result<GLuint> meshProgram() const;
+
+    /// A paused transform feedback of the host would not survive another one: Mesa (22.3) keeps the
+    /// primitive mode in the context.
+    /// Errors: InvalidArgument while the host's is active.
+    [[nodiscard]] Result<void> checkHost() const;
 
     /// Captures a source's triangles. The state is put back as Voxelizer promises.
     /// Waits for the GPU if a DrawSource does not say how many triangles it draws.

@@ -14,7 +14,8 @@ namespace lamina {
 
 /// Where a VoxelGrid keeps its words. The words and their order are the same.
 enum class VoxelStore : std::uint8_t {
-    Texture, ///< GL_RGBA32UI 2D array texture, a layer per 128 slices: what raster backends draw to.
+    Texture, ///< GL_RGBA32UI 2D array texture, a layer per 128 slices: what raster backends draw
+             ///< to.
     Buffer,  ///< GL buffer, seen as a GL_RGBA32UI texel buffer: what compute backends write to.
 };
 
@@ -59,17 +60,17 @@ public:
     /// Binds grid number `grid` of lamina/grid.glsl: the uniform buffer to binding
     /// uniformBufferBinding + grid, the texture (and no sampler object) to unit textureUnit + grid,
     /// where the bases are LAMINA_GRID_BLOCK_BINDING and LAMINA_GRID_TEXTURE_UNIT of the shader,
-    /// which must be compiled with LAMINA_GRID_BUFFER_STORE 1 for the buffer store, 0 for the other.
-    /// Does nothing on a grid of no size. GL: these two bindings (and the sampler binding of the
-    /// unit) are what it changes; the caller restores them if need be.
+    /// which must be compiled with LAMINA_GRID_BUFFER_STORE 1 for the buffer store, 0 for the
+    /// other. Does nothing on a grid of no size. GL: these two bindings (and the sampler binding of
+    /// the unit) are what it changes; the caller restores them if need be.
     void bind(std::uint32_t uniformBufferBinding = 0, std::uint32_t textureUnit = 0,
               std::uint32_t grid = 0) const;
 
     /// Where the voxels are; nothing for a grid of no size.
     [[nodiscard]] const GridTransform* transform() const;
     [[nodiscard]] VoxelStore store() const;
-    /// GL name of the 2D array texture or, in the buffer store, of the texel buffer texture; 0 for a
-    /// grid of no size.
+    /// GL name of the 2D array texture or, in the buffer store, of the texel buffer texture; 0 for
+    /// a grid of no size.
     [[nodiscard]] std::uint32_t texture() const;
     /// GL name of the buffer; 0 in the texture store and for a grid of no size.
     [[nodiscard]] std::uint32_t buffer() const;

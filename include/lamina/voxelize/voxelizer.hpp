@@ -23,11 +23,13 @@ enum class Coverage : std::uint8_t {
     /// For each column whose centre the triangle covers, every slice that the part of the triangle
     /// inside the column spans. No holes along the depth.
     Filled,
-    /// Every voxel whose closed cube the triangle touches: nothing is missed. A face on the boundary
+    /// Every voxel whose closed cube the triangle touches: nothing is missed. A face on the
+    /// boundary
     /// of two voxels sets both.
     Conservative,
     /// Thin and gap-free [Schwarz & Seidel 2010]: every voxel whose crosshair, the segments through
-    /// its centre along the axes and what they span, the triangle touches. A 6-connected path across
+    /// its centre along the axes and what they span, the triangle touches. A 6-connected path
+    /// across
     /// the surface meets a set voxel. Subset of Conservative.
     Separating6,
     /// Every voxel whose centre lies inside: an odd number of triangles crosses the column's centre
@@ -52,12 +54,12 @@ struct VoxelizerDesc {
 
 /// What a voxelizer can do on its device.
 struct VoxelizerCapabilities {
-    std::uint32_t maxColumns = 0;    ///< In x and in y.
-    std::uint32_t maxSlices = 0;     ///< Linear distribution.
-    std::uint32_t slicesPerPass = 0; ///< Slices made by one pass of the geometry.
-    bool perspective = false;        ///< Perspective grids.
-    bool anyDistribution = false;    ///< Logarithmic and custom slices.
-    bool drawSources = false;        ///< Geometry by DrawSource.
+    std::uint32_t maxColumns = 0;           ///< In x and in y.
+    std::uint32_t maxSlices = 0;            ///< Linear distribution.
+    std::uint32_t slicesPerPass = 0;        ///< Slices made by one pass of the geometry.
+    bool perspective = false;               ///< Perspective grids.
+    bool anyDistribution = false;           ///< Logarithmic and custom slices.
+    bool drawSources = false;               ///< Geometry by DrawSource.
     VoxelStore store = VoxelStore::Texture; ///< What voxelize() makes of the grid.
 };
 
