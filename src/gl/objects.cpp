@@ -22,6 +22,8 @@ GLenum identifier(ObjectKind kind) {
         return GL_PROGRAM;
     case ObjectKind::Query:
         return GL_QUERY;
+    case ObjectKind::TransformFeedback:
+        return GL_TRANSFORM_FEEDBACK;
     }
     return GL_NONE;
 }
@@ -49,6 +51,9 @@ GLuint createObject(DeviceState& device, ObjectKind kind, GLenum target) {
     case ObjectKind::Query:
         device.gl.CreateQueries(target, 1, &id);
         break;
+    case ObjectKind::TransformFeedback:
+        device.gl.CreateTransformFeedbacks(1, &id);
+        break;
     }
     return id;
 }
@@ -73,6 +78,9 @@ void destroyObject(DeviceState& device, ObjectKind kind, GLuint id, std::uint64_
         break;
     case ObjectKind::Query:
         device.gl.DeleteQueries(1, &id);
+        break;
+    case ObjectKind::TransformFeedback:
+        device.gl.DeleteTransformFeedbacks(1, &id);
         break;
     }
 }

@@ -14,7 +14,15 @@ namespace lamina::gl {
 
 struct DeviceState;
 
-enum class ObjectKind : std::uint8_t { Buffer, Texture, Framebuffer, VertexArray, Program, Query };
+enum class ObjectKind : std::uint8_t {
+    Buffer,
+    Texture,
+    Framebuffer,
+    VertexArray,
+    Program,
+    Query,
+    TransformFeedback
+};
 enum class Ownership : std::uint8_t { Owned, Borrowed };
 
 namespace detail {
@@ -98,6 +106,7 @@ using Framebuffer = Object<ObjectKind::Framebuffer>;
 using VertexArray = Object<ObjectKind::VertexArray>;
 using Program = Object<ObjectKind::Program>;
 using Query = Object<ObjectKind::Query>;
+using TransformFeedback = Object<ObjectKind::TransformFeedback>;
 
 /// A buffer with immutable storage of `bytes`, initialised from `data` unless null.
 /// storageFlags: as for glNamedBufferStorage. `operation` names the caller in errors.

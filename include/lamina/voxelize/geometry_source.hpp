@@ -46,6 +46,12 @@ struct DrawSource {
     /// declares what it needs: inputs, uniforms, buffers. It must not declare main(), nor use
     /// uniform buffer bindings 0 and 1, nor names that begin with `lamina` or `Lamina` otherwise.
     std::string vertexShader;
+    /// At least the number of triangles that the callback draws; 0: unknown. A compute backend
+    /// keeps them in a buffer of 36 bytes each: what exceeds a number given here is not voxelized,
+    /// and without one the backend waits for the GPU to see whether its buffer was large enough,
+    /// and if not runs the callback again with a larger one. Raster backends do not use it. For
+    /// compute backends no transform feedback of the host may be active.
+    std::uint64_t maxTriangles = 0;
     /// Binds the host's vertex array and resources and issues draws of GL_TRIANGLES,
     /// GL_TRIANGLE_STRIP or GL_TRIANGLE_FAN. It runs with Lamina's program and framebuffer bound
     /// and must leave both; vertex array, uniform buffers 0 and 1 and raster state are put back
