@@ -42,6 +42,11 @@ bool laminaVolumeHas(uint payload) {
     return (laminaVolume.constants.payload.x & payload) != 0u;
 }
 
+// Are a payload's texels means in 8 bits, not sums?
+bool laminaVolumeIsMean(uint payload) {
+    return (laminaVolume.constants.payload.y & payload) != 0u;
+}
+
 bool laminaVolumeHolds(ivec3 voxel) {
     return all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, ivec3(laminaVolumeSize())));
 }
@@ -115,8 +120,7 @@ float laminaVolumeAbsorptionNearer(ivec2 column, int slice) {
 
 // The mean that a texel stands for: 8-bit texels are means, others sums with the hits in alpha.
 vec3 laminaVolumeMean(vec4 texel, uint payload) {
-    bool isMean = (laminaVolume.constants.payload.y & payload) != 0u;
-    return isMean || texel.a == 0.0 ? texel.rgb : texel.rgb / texel.a;
+    return laminaVolumeIsMean(payload) || texel.a == 0.0 ? texel.rgb : texel.rgb / texel.a;
 }
 
 // Mean surface normal, world space, unit length; zero where nothing hits or normals cancel out.
@@ -127,7 +131,7 @@ vec3 laminaVolumeNormal(ivec3 voxel) {
     if (texel.a == 0.0)
         return vec3(0.0);
     vec3 mean = laminaVolumeMean(texel, LAMINA_VOLUME_NORMAL);
-    if ((laminaVolume.constants.payload.y & LAMINA_VOLUME_NORMAL) != 0u)
+    if (laminaVolumeIsMean(LAMINA_VOLUME_NORMAL))
         mean = mean * 2.0 - 1.0;
     float size = length(mean);
     return size > LAMINA_VOLUME_CANCELLED_NORMAL ? mean / size : vec3(0.0);
@@ -148,7 +152,7 @@ vec2 laminaVolumeOptics(ivec3 voxel) {
     if (texel.a == 0.0)
         return vec2(1.0);
     vec2 mean = laminaVolumeMean(texel, LAMINA_VOLUME_OPTICS).xy;
-    if ((laminaVolume.constants.payload.y & LAMINA_VOLUME_OPTICS) != 0u)
+    if (laminaVolumeIsMean(LAMINA_VOLUME_OPTICS))
         mean.x = 1.0 + mean.x * LAMINA_VOLUME_INDEX_RANGE;
     return mean;
 }
