@@ -122,4 +122,12 @@ createTextureArray(const std::shared_ptr<DeviceState>& device, GLenum internalFo
                    std::uint32_t bytesPerTexel, std::uint32_t width, std::uint32_t height,
                    std::uint32_t layers, std::string_view operation, std::string_view label);
 
+/// A one-level 3D texture with nearest filtering and clamped edges. bytesPerTexel: of
+/// `internalFormat`.
+/// Errors: DeviceLimit, OutOfMemory.
+[[nodiscard]] LAMINA_API Result<Texture>
+createTexture3d(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
+                std::uint32_t bytesPerTexel, std::uint32_t width, std::uint32_t height,
+                std::uint32_t depth, std::string_view operation, std::string_view label);
+
 } // namespace lamina::gl
