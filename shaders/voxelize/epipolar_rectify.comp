@@ -1,21 +1,20 @@
 // Resamples depth maps of lights into epipolar voxels, all shadow volumes of a batch in one dispatch
-// ([WD13] 2.6, 3.1.3), and extrudes them in the same visit if asked (3.1.4).
+// ([WD13] 2.6, 3.1.3).
 //
-// Launch: theta samples x phi groups x shadow volumes work groups. A work group owns one row (all alpha)
-// of one texel layer, in shared memory; an invocation owns one light ray, the centre of (theta, phi):
+// Launch: ceil(theta samples / LAMINA_EPIPOLAR_RECTIFY_ROWS) x phi groups x shadow volumes work groups. A
+// work group owns some rows (all alpha) of one texel layer, one after the other in shared memory; an
+// invocation owns one phi sample, and so one light ray (theta, phi) a row:
 //   1. clear the row; barrier;
 //   2. find the texel of the depth map that the ray passes, and alpha of the surface point at that
 //      texel's centre (a point that surely is on the surface, which the texel's depth along the ray's own
 //      direction is not);
-//   3. set the ray's bit in the first voxel whose centre lies behind that point: so a bit is the
-//      visibility at its voxel's centre. An atomic OR, because the rays of a word share its texels;
-//      barrier;
-//   4. LAMINA_EPIPOLAR_EXTRUDE: an inclusive OR scan of the row, 32 runs for each of the 4 components;
-//   5. store the row: every texel is written, so the target needs no clear.
+//   3. set the ray's bit in the first voxel whose centre lies behind that point: so, after the scan, a
+//      bit is the visibility at its voxel's centre. An atomic OR, because rays share words; barrier;
+//   4. store the row and clear it for the next; barrier. Every texel is written, so the target needs no
+//      clear.
 // Occluders before the volume's alpha range shadow all of the ray, those behind it nothing.
 // permute LAMINA_EPIPOLAR_MAP = LAMINA_EPIPOLAR_MAP_OWN LAMINA_EPIPOLAR_MAP_2D LAMINA_EPIPOLAR_MAP_ARRAY LAMINA_EPIPOLAR_MAP_CUBE
 // permute LAMINA_EPIPOLAR_ALPHA_CAPACITY = 128 512 2048
-// permute LAMINA_EPIPOLAR_EXTRUDE = 0 1
 #include <lamina/shared/epipolar_block.glsl>
 
 layout(local_size_x = 128) in;
@@ -162,30 +161,6 @@ int firstShadowed(LaminaEpipolarMap map, LaminaEpipolarSpace space, vec2 angles)
     return int(clamp(ceil(alpha - 0.5), 0.0, float(space.size.x)));
 }
 
-#if LAMINA_EPIPOLAR_EXTRUDE
-void extrudeRow(uint alphaCount) {
-    const uint kRuns = 32u;
-    uint component = gl_LocalInvocationID.x & 3u;
-    uint length = (alphaCount + kRuns - 1u) / kRuns;
-    uint first = min((gl_LocalInvocationID.x >> 2) * length, alphaCount);
-    uint end = min(first + length, alphaCount);
-    uint bits = 0u;
-    for (uint i = first; i < end; ++i) {
-        bits |= laminaEpipolarRow[i * 4u + component];
-        laminaEpipolarRow[i * 4u + component] = bits;
-    }
-    barrier();
-    uint before = 0u;
-    for (uint i = length; i <= first; i += length)
-        before |= laminaEpipolarRow[(i - 1u) * 4u + component];
-    // The last texels of the runs are read by later runs before they change.
-    barrier();
-    for (uint i = first; i < end; ++i)
-        laminaEpipolarRow[i * 4u + component] |= before;
-    barrier();
-}
-#endif
-
 void main() {
     LaminaEpipolarMap map = laminaEpipolarMaps[gl_WorkGroupID.z];
     LaminaEpipolarSpace space = laminaEpipolarSpaces[map.layersAndSpace.z];
@@ -196,20 +171,25 @@ void main() {
 
     uint bit = gl_LocalInvocationID.x;
     uint phi = gl_WorkGroupID.y * space.tile.z + bit;
-    if (bit < space.tile.z && phi < space.size.z) {
-        vec2 sampled = vec2(gl_WorkGroupID.x, phi) + 0.5;
-        int first = firstShadowed(map, space, space.origin.yz + sampled / space.scale.yz);
-        if (first < int(alphaCount))
-            atomicOr(laminaEpipolarRow[uint(first) * 4u + (bit >> 5)], 1u << (bit & 31u));
-    }
-    barrier();
-#if LAMINA_EPIPOLAR_EXTRUDE
-    extrudeRow(alphaCount);
-#endif
-    ivec3 origin = ivec3(space.tile.xy + uvec2(0u, gl_WorkGroupID.x), gl_WorkGroupID.y);
-    for (uint i = gl_LocalInvocationID.x; i < alphaCount; i += gl_WorkGroupSize.x) {
-        uvec4 bits = uvec4(laminaEpipolarRow[i * 4u], laminaEpipolarRow[i * 4u + 1u],
-                           laminaEpipolarRow[i * 4u + 2u], laminaEpipolarRow[i * 4u + 3u]);
-        imageStore(laminaEpipolarImage, origin + ivec3(i, 0, 0), bits);
+    uint firstRow = gl_WorkGroupID.x * LAMINA_EPIPOLAR_RECTIFY_ROWS;
+    uint endRow = min(firstRow + LAMINA_EPIPOLAR_RECTIFY_ROWS, space.size.y);
+    for (uint row = firstRow; row < endRow; ++row) {
+        if (bit < space.tile.z && phi < space.size.z) {
+            vec2 sampled = vec2(row, phi) + 0.5;
+            int first = firstShadowed(map, space, space.origin.yz + sampled / space.scale.yz);
+            if (first < int(alphaCount))
+                atomicOr(laminaEpipolarRow[uint(first) * 4u + (bit >> 5)], 1u << (bit & 31u));
+        }
+        barrier();
+        ivec3 origin = ivec3(space.tile.xy + uvec2(0u, row), gl_WorkGroupID.y);
+        for (uint i = gl_LocalInvocationID.x; i < alphaCount; i += gl_WorkGroupSize.x) {
+            uvec4 bits;
+            for (int word = 0; word < 4; ++word) {
+                bits[word] = laminaEpipolarRow[i * 4u + word];
+                laminaEpipolarRow[i * 4u + word] = 0u;
+            }
+            imageStore(laminaEpipolarImage, origin + ivec3(i, 0, 0), bits);
+        }
+        barrier();
     }
 }

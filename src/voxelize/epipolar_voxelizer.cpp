@@ -79,8 +79,7 @@ struct EpipolarVoxelizer::Impl {
         , sampler(state)
         , maps(gl::Buffer::create(state, "lamina light depth maps")) {}
 
-    [[nodiscard]] Result<GLuint> rectifyProgram(int map, std::uint32_t alphaCount,
-                                                bool extrude) const;
+    [[nodiscard]] Result<GLuint> rectifyProgram(int map, std::uint32_t alphaCount) const;
     [[nodiscard]] Result<GLuint> scanProgram() const {
         return gl::findOrBuildProgram(
             *device,
@@ -90,10 +89,10 @@ struct EpipolarVoxelizer::Impl {
                       std::span<const shared::LaminaEpipolarMap> blocks, const EpipolarGrid& out);
     Result<EpipolarStats> fromGeometry(std::span<const GeometrySource> sources,
                                        std::span<const EpipolarTransform> transforms,
-                                       EpipolarGrid& out, bool extrude);
+                                       EpipolarGrid& out);
     Result<EpipolarStats> fromMaps(std::span<const LightDepthMap> hostMaps,
-                                   std::span<const EpipolarTransform> transforms, EpipolarGrid& out,
-                                   bool extrude);
+                                   std::span<const EpipolarTransform> transforms,
+                                   EpipolarGrid& out);
 
     std::shared_ptr<gl::DeviceState> device;
     EpipolarVoxelizerDesc desc;
@@ -102,14 +101,12 @@ struct EpipolarVoxelizer::Impl {
     gl::Buffer maps;
 };
 
-Result<GLuint> EpipolarVoxelizer::Impl::rectifyProgram(int map, std::uint32_t alphaCount,
-                                                       bool extrude) const {
+Result<GLuint> EpipolarVoxelizer::Impl::rectifyProgram(int map, std::uint32_t alphaCount) const {
     const char* capacity = alphaCount <= 128 ? "128" : (alphaCount <= 512 ? "512" : "2048");
     return gl::findOrBuildProgram(*device, {"lamina epipolar rectify",
                                             {{GL_COMPUTE_SHADER, "voxelize/epipolar_rectify.comp"}},
                                             {{"LAMINA_EPIPOLAR_MAP", std::to_string(map)},
-                                             {"LAMINA_EPIPOLAR_ALPHA_CAPACITY", capacity},
-                                             {"LAMINA_EPIPOLAR_EXTRUDE", extrude ? "1" : "0"}}});
+                                             {"LAMINA_EPIPOLAR_ALPHA_CAPACITY", capacity}}});
 }
 
 void EpipolarVoxelizer::Impl::rectifyBatch(GLuint program, GLuint texture,
@@ -128,8 +125,9 @@ void EpipolarVoxelizer::Impl::rectifyBatch(GLuint program, GLuint texture,
     gl.BindImageTexture(LAMINA_EPIPOLAR_PASS_WORD_IMAGE, out.texture(), 0, GL_TRUE, 0,
                         GL_WRITE_ONLY, GL_RGBA32UI);
     gl.UseProgram(program);
-    gl.DispatchCompute(out.transforms().front().size().y, out.groupCount(),
-                       static_cast<GLuint>(blocks.size()));
+    const std::uint32_t rows = out.transforms().front().size().y;
+    gl.DispatchCompute((rows + LAMINA_EPIPOLAR_RECTIFY_ROWS - 1) / LAMINA_EPIPOLAR_RECTIFY_ROWS,
+                       out.groupCount(), static_cast<GLuint>(blocks.size()));
     gl.MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                      GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
@@ -137,7 +135,7 @@ void EpipolarVoxelizer::Impl::rectifyBatch(GLuint program, GLuint texture,
 Result<EpipolarStats>
 EpipolarVoxelizer::Impl::fromGeometry(std::span<const GeometrySource> sources,
                                       std::span<const EpipolarTransform> transforms,
-                                      EpipolarGrid& out, bool extrude) {
+                                      EpipolarGrid& out) {
     const gl::DebugGroup group(*device, "lamina: voxelize (epipolar)");
     if (auto sound = checkEpipolarLayout(transforms, out.layout()); !sound)
         return sound.error();
@@ -146,8 +144,7 @@ EpipolarVoxelizer::Impl::fromGeometry(std::span<const GeometrySource> sources,
     auto programs = depthMaps.prepare(sources);
     if (!programs)
         return programs.error();
-    const auto rectify =
-        rectifyProgram(LAMINA_EPIPOLAR_MAP_OWN, transforms.front().size().x, extrude);
+    const auto rectify = rectifyProgram(LAMINA_EPIPOLAR_MAP_OWN, transforms.front().size().x);
     if (!rectify)
         return rectify.error();
 
@@ -194,8 +191,8 @@ EpipolarVoxelizer::Impl::fromGeometry(std::span<const GeometrySource> sources,
 
 Result<EpipolarStats>
 EpipolarVoxelizer::Impl::fromMaps(std::span<const LightDepthMap> hostMaps,
-                                  std::span<const EpipolarTransform> transforms, EpipolarGrid& out,
-                                  bool extrude) {
+                                  std::span<const EpipolarTransform> transforms,
+                                  EpipolarGrid& out) {
     const gl::DebugGroup group(*device, "lamina: voxelize (epipolar)");
     if (hostMaps.size() != transforms.size())
         return Error{ErrorCode::InvalidArgument,
@@ -215,7 +212,7 @@ EpipolarVoxelizer::Impl::fromMaps(std::span<const LightDepthMap> hostMaps,
     }
     std::vector<GLuint> programs;
     for (const auto& [source, blocks] : batches) {
-        auto program = rectifyProgram(source.map, transforms.front().size().x, extrude);
+        auto program = rectifyProgram(source.map, transforms.front().size().x);
         if (!program)
             return program.error();
         programs.push_back(*program);
@@ -262,22 +259,30 @@ Result<EpipolarVoxelizer> EpipolarVoxelizer::create(const Device& device,
 Result<EpipolarStats> EpipolarVoxelizer::voxelize(std::span<const GeometrySource> sources,
                                                   std::span<const EpipolarTransform> transforms,
                                                   EpipolarGrid& out) {
-    return mImpl->fromGeometry(sources, transforms, out, true);
+    auto made = rectify(sources, transforms, out);
+    if (made)
+        if (auto scanned = scan(out); !scanned)
+            return scanned.error();
+    return made;
 }
 Result<EpipolarStats> EpipolarVoxelizer::voxelize(std::span<const LightDepthMap> maps,
                                                   std::span<const EpipolarTransform> transforms,
                                                   EpipolarGrid& out) {
-    return mImpl->fromMaps(maps, transforms, out, true);
+    auto made = rectify(maps, transforms, out);
+    if (made)
+        if (auto scanned = scan(out); !scanned)
+            return scanned.error();
+    return made;
 }
 Result<EpipolarStats> EpipolarVoxelizer::rectify(std::span<const GeometrySource> sources,
                                                  std::span<const EpipolarTransform> transforms,
                                                  EpipolarGrid& out) {
-    return mImpl->fromGeometry(sources, transforms, out, false);
+    return mImpl->fromGeometry(sources, transforms, out);
 }
 Result<EpipolarStats> EpipolarVoxelizer::rectify(std::span<const LightDepthMap> maps,
                                                  std::span<const EpipolarTransform> transforms,
                                                  EpipolarGrid& out) {
-    return mImpl->fromMaps(maps, transforms, out, false);
+    return mImpl->fromMaps(maps, transforms, out);
 }
 
 Result<void> EpipolarVoxelizer::scan(EpipolarGrid& grid) {

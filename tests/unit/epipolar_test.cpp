@@ -14,8 +14,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
-
 GridCamera eyeAt(const glm::dvec3& place, const glm::dvec3& target) {
     return GridCamera::perspective(glm::lookAt(place, target, glm::dvec3(0, 1, 0)), 0.9, 1.5, 0.25,
                                    20.0);

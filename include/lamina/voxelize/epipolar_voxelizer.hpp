@@ -34,8 +34,8 @@ struct EpipolarStats {
 /// Makes voxelized shadow volumes ([WD13] 2.6, 3.1), on the GPU, every frame: depth maps of the
 /// lights, from the host or drawn here, are resampled for every (theta, phi), and occlusion is
 /// extruded along alpha. A voxel's bit is the visibility at its centre. Any number of shadow
-/// volumes takes one dispatch per texture of depth maps. Move-only; see Device for threads,
-/// lifetime and GL state.
+/// volumes takes one dispatch per texture of depth maps and one for the scan. Move-only; see Device
+/// for threads, lifetime and GL state.
 ///
 /// Every call leaves the GL state as it was, needs no barrier before the grid is sampled, does not
 /// wait for the GPU and leaves `out` unchanged if it fails.

@@ -26,6 +26,9 @@
 #define LAMINA_EPIPOLAR_PASS_DEPTH_UNIT 0
 #define LAMINA_EPIPOLAR_PASS_WORD_IMAGE 0
 
+// Rows of a work group in the rectify kernel.
+#define LAMINA_EPIPOLAR_RECTIFY_ROWS 4u
+
 // Invocations that share a row, and rows of a work group, in the scan kernel.
 #define LAMINA_EPIPOLAR_SCAN_RUNS 16
 #define LAMINA_EPIPOLAR_SCAN_ROWS 4
