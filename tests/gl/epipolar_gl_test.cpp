@@ -60,6 +60,39 @@ TEST_F(EpipolarGlTest, VisibilityAgreesWithRayCasting) {
     }
 }
 
+TEST_F(EpipolarGlTest, LightsAnywhereGetTheDepthMapsTheyNeed) {
+    auto buffers = MeshBuffers::upload(device(), mScene).value();
+    const GeometrySource source = buffers.view();
+    auto voxelizer = EpipolarVoxelizer::create(device(), {.depthMapTexels = 512}).value();
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> across(-7.0, 7.0);
+    std::uniform_real_distribution<double> up(0.5, 4.0);
+    std::vector<EpipolarTransform> transforms;
+    for (int i = 0; i < 60; ++i) {
+        EpipolarLight light = pointLight({across(random), up(random), across(random)});
+        if (i % 4 == 0)
+            light = {.kind = LightKind::Directional,
+                     .direction = {across(random), -up(random), across(random)}};
+        transforms.push_back(EpipolarTransform::fit(kFront, light, {128, 128, 128}).value());
+    }
+    auto grid = EpipolarGrid::create(device()).value();
+    const auto stats = voxelizer.voxelize({&source, 1}, transforms, grid);
+    ASSERT_TRUE(stats) << stats.error().text;
+    EXPECT_LT(stats->depthMaps, 5 * transforms.size());
+    const EpipolarBits bits = grid.download().value();
+    std::size_t disagreements = 0;
+    std::size_t ideal = 0;
+    for (std::size_t vsv = 0; vsv < transforms.size(); ++vsv) {
+        const Agreement found = compareWithRays(bits, vsv, mRays, kFront, 2000, -1.5);
+        EXPECT_EQ(found.unproved, 0u) << vsv;
+        disagreements += found.disagreements;
+        ideal += found.ideal;
+    }
+    std::printf("60 lights: %zu of 120000 points disagree, ideal %zu, %u maps\n", disagreements,
+                ideal, stats->depthMaps);
+    EXPECT_LE(disagreements, ideal + ideal / 10);
+}
+
 TEST_F(EpipolarGlTest, ManyVolumesTiledEqualSingleOnes) {
     auto buffers = MeshBuffers::upload(device(), mScene).value();
     const GeometrySource source = buffers.view();

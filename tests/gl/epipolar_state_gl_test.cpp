@@ -104,6 +104,42 @@ TEST_F(EpipolarStateGlTest, EveryCallRestoresTheState) {
     });
 }
 
+TEST_F(EpipolarStateGlTest, ActiveTransformFeedbackIsPausedAndResumed) {
+    auto buffers = MeshBuffers::upload(device(), kBox).value();
+    const GeometrySource source = buffers.view();
+    auto voxelizer = EpipolarVoxelizer::create(device(), {.depthMapTexels = 64}).value();
+    auto grid = EpipolarGrid::create(device()).value();
+    const EpipolarTransform transform = boxVolume({32, 16, 140});
+    const EpipolarBits expected = boxBits({&transform, 1});
+
+    const GLuint program = gl().CreateProgram();
+    const GLuint shader = gl().CreateShader(GL_VERTEX_SHADER);
+    const char* text = "#version 450\nout float captured;\n"
+                       "void main() { captured = 1.0; gl_Position = vec4(0.0); }";
+    gl().ShaderSource(shader, 1, &text, nullptr);
+    gl().CompileShader(shader);
+    gl().AttachShader(program, shader);
+    const char* varying = "captured";
+    gl().TransformFeedbackVaryings(program, 1, &varying, GL_INTERLEAVED_ATTRIBS);
+    gl().LinkProgram(program);
+    gl().DeleteShader(shader);
+    GLuint buffer = 0;
+    gl().CreateBuffers(1, &buffer);
+    gl().NamedBufferData(buffer, 64, nullptr, GL_DYNAMIC_READ);
+    gl().BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
+    gl().UseProgram(program);
+    gl().BeginTransformFeedback(GL_POINTS);
+    expectUnchanged("voxelize", [&] {
+        ASSERT_TRUE(voxelizer.voxelize({&source, 1}, {&transform, 1}, grid));
+    });
+    gl().EndTransformFeedback();
+    EXPECT_TRUE(std::ranges::equal(grid.download()->words(), expected.words()));
+    gl().UseProgram(0);
+    gl().BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+    gl().DeleteProgram(program);
+    gl().DeleteBuffers(1, &buffer);
+}
+
 TEST_F(EpipolarStateGlTest, BindChangesOnlyWhatItPromises) {
     const EpipolarTransform transform = boxVolume({8, 8, 8});
     auto grid = EpipolarGrid::create(device()).value();

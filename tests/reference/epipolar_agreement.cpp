@@ -33,12 +33,12 @@ bool isNearBoundary(const ShadowRays& rays, const EpipolarTransform& transform,
 } // namespace
 
 Agreement compareWithRays(const EpipolarBits& bits, std::size_t vsv, const ShadowRays& rays,
-                          const GridCamera& eye, std::size_t count) {
+                          const GridCamera& eye, std::size_t count, double lowest) {
     const EpipolarTransform& transform = bits.transforms()[vsv];
     const GridTransform view = GridTransform::camera(eye, {1, 1, 1}).value();
     std::mt19937 random(11);
     std::uniform_real_distribution<double> x(-3.0, 3.0);
-    std::uniform_real_distribution<double> y(0.0, 1.6);
+    std::uniform_real_distribution<double> y(lowest, 1.6);
     Agreement result;
     while (result.points < count) {
         const glm::dvec3 point(x(random), y(random), x(random));

@@ -21,10 +21,11 @@ struct Agreement {
     std::size_t unproved = 0;
 };
 
-/// Compares EpipolarBits::lit() at random points of the scene that the camera sees.
+/// Compares EpipolarBits::lit() at random points of the scene that the camera sees, from `lowest`
+/// on: points below 0 are in the shadow of the floor.
 [[nodiscard]] Agreement compareWithRays(const EpipolarBits& bits, std::size_t vsv,
                                         const ShadowRays& rays, const GridCamera& eye,
-                                        std::size_t count);
+                                        std::size_t count, double lowest = 0.0);
 
 /// Sees the scene's ten units.
 [[nodiscard]] GridCamera makeEye(const glm::dvec3& from, const glm::dvec3& to);
