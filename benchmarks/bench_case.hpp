@@ -54,7 +54,7 @@ void report(benchmark::State& state, const TriangleMesh& mesh, const GridTransfo
             std::uint64_t setVoxels, std::uint64_t bytes);
 
 /// Each registers benchmarks of one method, named "mesh/resolution/method".
-void registerSlicemap(const Device& device, const Case& what);
+void registerVoxelizers(const Device& device, const Case& what);
 void registerSlicemapPasses(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
 void registerHostOverlap(const Case& what);
 #if defined(LAMINA_HAS_OPENVDB)

@@ -60,7 +60,7 @@ void registerAll(const Device& device) {
     for (const auto& mesh : meshes)
         for (const std::uint32_t resolution : {128u, 256u, 512u, 1024u}) {
             const bench::Case what{mesh, resolution};
-            bench::registerSlicemap(device, what);
+            bench::registerVoxelizers(device, what);
             bench::registerHostOverlap(what);
 #if defined(LAMINA_HAS_OPENVDB)
             bench::registerOpenVdb(what);

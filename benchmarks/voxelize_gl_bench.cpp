@@ -54,7 +54,7 @@ private:
 Result<void> run(benchmark::State& state, const Device& device, const TriangleMesh& mesh,
                  const GridTransform& transform, Coverage coverage) {
     const GladGLContext& gl = device.state()->gl;
-    auto voxelizer = Voxelizer::create(device, {Backend::Slicemap, coverage});
+    auto voxelizer = Voxelizer::create(device, {.coverage = coverage});
     if (!voxelizer)
         return voxelizer.error();
     auto buffers = MeshBuffers::upload(device, mesh);
@@ -117,10 +117,17 @@ void registerRun(const Device& device, const std::string& name, std::shared_ptr<
 
 } // namespace
 
-void registerSlicemap(const Device& device, const Case& what) {
-    for (const Coverage coverage : {Coverage::Filled, Coverage::Sampled})
-        registerRun(device, what.describe() + "/lamina slicemap " + std::string(name(coverage)),
-                    what.mesh, coverage, [resolution = what.resolution](const TriangleMesh& mesh) {
+void registerVoxelizers(const Device& device, const Case& what) {
+    struct Row {
+        const char* name;
+        Coverage coverage;
+    };
+    for (const Row& row :
+         {Row{"slicemap filled", Coverage::Filled}, Row{"slicemap sampled", Coverage::Sampled},
+          Row{"overlap conservative", Coverage::Conservative},
+          Row{"overlap separating6", Coverage::Separating6}, Row{"overlap solid", Coverage::Solid}})
+        registerRun(device, what.describe() + "/lamina " + row.name, what.mesh, row.coverage,
+                    [resolution = what.resolution](const TriangleMesh& mesh) {
                         return benchGrid(mesh, resolution);
                     });
 }

@@ -22,12 +22,12 @@ separate_arguments(options UNIX_COMMAND "${OPTIONS}")
 set(project_settings -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}"
     -DCMAKE_BUILD_TYPE=${BUILD_TYPE})
 
-# The variant that this build tree is not gets a small build of its own.
+# The variant that this build tree is not gets a small build of its own, quick rather than fast.
 if(NOT BUILT)
     string(COMPARE EQUAL "${VARIANT}" shared is_shared)
     set(BUILT "${WORK}/build")
     run("configuring Lamina" ${CMAKE_COMMAND} -S ${SOURCE} -B ${BUILT} ${project_settings}
-        -DBUILD_SHARED_LIBS=${is_shared} ${options} -DLAMINA_TOOLS=OFF -DLAMINA_EXAMPLES=OFF
+        -DCMAKE_BUILD_TYPE=Debug -DBUILD_SHARED_LIBS=${is_shared} ${options} -DLAMINA_TOOLS=OFF -DLAMINA_EXAMPLES=OFF
         -DLAMINA_TESTS=OFF -DLAMINA_BENCHMARKS=OFF)
     run("building Lamina" ${CMAKE_COMMAND} --build ${BUILT} --parallel 2)
 endif()

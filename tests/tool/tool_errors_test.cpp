@@ -134,12 +134,11 @@ TEST_F(ToolErrors, Words) {
 }
 
 TEST_F(ToolErrors, WordsOfLaterVersionsSayWhatIsServed) {
-    for (const char* coverage : {"conservative", "separating6", "solid"})
-        expectFailure({mesh, "--coverage", coverage, "-o", out}, kUnsupported,
-                      {coverage, "not served by this version", "sampled, filled"});
-    for (const char* backend : {"local_slicemap", "mrt_slicemap", "volume", "overlap"})
+    for (const char* backend : {"local_slicemap", "mrt_slicemap", "volume"})
         expectFailure({mesh, "--backend", backend, "-o", out}, kUnsupported,
-                      {backend, "not served by this version", "auto, slicemap"});
+                      {backend, "not served by this version", "auto, slicemap, overlap"});
+    expectFailure({mesh, "--backend", "slicemap", "--coverage", "solid", "-o", out}, kUnsupported,
+                  {"solid", "slicemap", "overlap"});
 }
 
 TEST_F(ToolErrors, OutputsAreCheckedBeforeTheMeshIsRead) {

@@ -5,7 +5,9 @@
 
 #include <lamina/mesh_io/mesh_file.hpp>
 
+#include <reference/crossings.hpp>
 #include <reference/filled.hpp>
+#include <reference/overlap.hpp>
 #include <reference/sampled.hpp>
 #include <reference/shapes.hpp>
 
@@ -123,48 +125,87 @@ TEST(ToolVoxels, FlatMeshIsOneVoxelThick) {
     }
 }
 
-// Vertices on sixteenths of a voxel: no rounding in the mesh. Sampled must agree everywhere. Filled
-// must have all that the reference has; what a triangle reaches only at a corner of its column
-// within 1e-4 of a voxel is left to the device's float arithmetic.
-class ToolReference : public testing::TestWithParam<std::tuple<int, bool>> {};
+/// What a coverage must set and what it may set besides.
+struct Bounds {
+    BitGrid least;
+    BitGrid most;
+};
+
+Bounds boundsOf(Coverage coverage, const TriangleMesh& mesh, const GridTransform& transform) {
+    reference::Options grown;
+    grown.grow = 1e-4;
+    reference::Options shrunk;
+    shrunk.grow = -1e-9;
+    switch (coverage) {
+    case Coverage::Sampled:
+        return {*reference::sampled(mesh, transform), *reference::sampled(mesh, transform)};
+    case Coverage::Filled:
+        return {*reference::filled(mesh, transform), *reference::filled(mesh, transform, grown)};
+    case Coverage::Conservative:
+        return {*reference::overlap(mesh, transform, shrunk),
+                *reference::overlap(mesh, transform, grown)};
+    case Coverage::Separating6:
+        return {*reference::separating6(mesh, transform, shrunk),
+                *reference::separating6(mesh, transform, grown)};
+    case Coverage::Solid:
+        break;
+    }
+    return {*reference::inside(mesh, transform), *reference::inside(mesh, transform)};
+}
+
+// Vertices on sixteenths of a voxel: no rounding in the mesh. Sampled and solid must agree
+// everywhere; of the others, what a triangle reaches only within 1e-4 of a voxel is left to the
+// device's arithmetic.
+class ToolReference : public testing::TestWithParam<std::tuple<int, Coverage>> {};
 
 TEST_P(ToolReference, EveryVoxelOfBoundsAndGridAgrees) {
-    const auto [axis, isFilled] = GetParam();
+    const auto [axis, coverage] = GetParam();
     const Box3 box{{-3, -2, 0.5}, {3, 2, 2.5}};
     const glm::uvec3 counts(48, 64, 40);
     const GridTransform transform = *GridTransform::box(box, counts, static_cast<Axis>(axis));
-    const TriangleMesh mesh =
-        reference::snapped(reference::merged(reference::makeTorus({0, 0, 1.5f}, 1.6f, 0.7f, 40, 24),
-                                             reference::makeTriangleSoup(
-                                                 {{-2, -1.9, 0.6}, {2, 1.9, 2.4}}, 60, 1.0f, 3)),
-                           transform);
+    TriangleMesh mesh = reference::makeTorus({0, 0, 1.5f}, 1.6f, 0.7f, 40, 24);
+    if (coverage != Coverage::Solid) // which needs a closed mesh
+        mesh = reference::merged(
+            mesh, reference::makeTriangleSoup({{-2, -1.9, 0.6}, {2, 1.9, 2.4}}, 60, 1.0f, 3));
+    mesh = reference::snapped(mesh, transform);
     const TemporaryFolder folder;
     writePly(folder / "mesh.ply", mesh);
 
     std::vector<std::string> arguments = boxArguments(box, counts);
     arguments.insert(arguments.begin(), folder / "mesh.ply");
-    for (const char* word :
-         {"--axis", kAxisNames[axis], "--coverage", isFilled ? "filled" : "sampled"})
+    for (const std::string& word : {std::string("--axis"), std::string(kAxisNames[axis]),
+                                    std::string("--coverage"), std::string(name(coverage))})
         arguments.emplace_back(word);
     const NpyArray array = voxelsOf(arguments, folder / "mesh.npy");
     ASSERT_EQ(array.counts, counts);
 
-    reference::Options grown;
-    grown.grow = 1e-4;
-    const BitGrid least =
-        isFilled ? *reference::filled(mesh, transform) : *reference::sampled(mesh, transform);
-    const BitGrid most = isFilled ? *reference::filled(mesh, transform, grown) : least;
-    EXPECT_GT(least.count(), 2000u);
-    EXPECT_LE(array.setCount(), least.count() + least.count() / 100);
+    const Bounds bounds = boundsOf(coverage, mesh, transform);
+    EXPECT_GT(bounds.least.count(), 2000u);
     EXPECT_EQ(wrongVoxels(array,
                           [&](const glm::uvec3& voxel, bool isSet) {
-                              return isSet ? isSetAt(most, voxel) : !isSetAt(least, voxel);
+                              return isSet ? isSetAt(bounds.most, voxel)
+                                           : !isSetAt(bounds.least, voxel);
                           }),
               0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(AxesAndCoverages, ToolReference,
-                         testing::Combine(testing::Values(0, 1, 2), testing::Bool()));
+                         testing::Combine(testing::Values(0, 1, 2),
+                                          testing::Values(Coverage::Sampled, Coverage::Filled,
+                                                          Coverage::Conservative,
+                                                          Coverage::Separating6, Coverage::Solid)));
+
+TEST(ToolVoxels, SolidOfAnOpenMeshWarns) {
+    const TemporaryFolder folder;
+    TriangleMesh open = reference::makeIcosphere({0, 0, 0}, 1.0f, 3);
+    open.triangles.erase(open.triangles.begin(), open.triangles.begin() + 40);
+    writePly(folder / "open.ply", open);
+    const ToolResult solid = runTool({folder / "open.ply", "-r", "64", "--coverage", "solid",
+                                      "--stats", "-", "-o", folder / "open.npy"});
+    EXPECT_EQ(solid.exitCode, 0);
+    EXPECT_NE(solid.err.find("warning: the mesh is not closed"), std::string::npos) << solid.err;
+    EXPECT_GT(nlohmann::json::parse(solid.out)["voxels"]["odd_columns"].get<int>(), 0);
+}
 
 /// Filled by -r: everything that a grid shrunk by 1e-4 of a voxel must have, nothing that one grown
 /// by 1e-4 has not. The margin is the rounding of float arithmetic that the coverage allows.
@@ -201,9 +242,9 @@ TEST(ToolVoxels, FilledByResolutionStaysWithinTheReferences) {
     const TemporaryFolder folder;
     writePly(folder / "knot.ply", mesh);
     for (const char* axis : kAxisNames) {
-        const NpyArray array = voxelsOf(
-            {folder / "knot.ply", "-r", "70", "--axis", axis, "--stats", folder / "knot.json"},
-            folder / "knot.npy");
+        const NpyArray array = voxelsOf({folder / "knot.ply", "-r", "70", "--coverage", "filled",
+                                         "--axis", axis, "--stats", folder / "knot.json"},
+                                        folder / "knot.npy");
         expectFilledWithin(mesh, "torus knot", folder / "knot.json", array);
     }
 }
@@ -237,16 +278,17 @@ TEST(ToolVoxels, BothContextsGiveTheSameBytes) {
     EXPECT_EQ(readBytes(folder / "egl.npy"), readBytes(folder / "osmesa.npy"));
 }
 
-TEST(ToolVoxels, DefaultsAreResolution256FilledAndTheBestAxis) {
+TEST(ToolVoxels, DefaultsAreResolution256ConservativeAndTheBestAxis) {
     const TemporaryFolder folder;
     writePly(folder / "slab.ply", reference::makeBox({0, 0, 0}, {1, 4, 4}));
     (void)voxelsOf({folder / "slab.ply"}, folder / "default.npy");
     const NpyArray array =
-        voxelsOf({folder / "slab.ply", "--resolution", "256", "--coverage", "filled", "--axis", "x",
-                  "--backend", "slicemap", "--context", "auto"},
+        voxelsOf({folder / "slab.ply", "--resolution", "256", "--coverage", "conservative",
+                  "--axis", "x", "--backend", "overlap", "--context", "auto"},
                  folder / "same.npy");
     EXPECT_EQ(array.counts, glm::uvec3(64, 256, 256));
-    EXPECT_EQ(array.setCount(), 2u * 256 * 256);
+    // The shell of the box.
+    EXPECT_EQ(array.setCount(), 64u * 256 * 256 - 62u * 254 * 254);
     EXPECT_EQ(readBytes(folder / "default.npy"), readBytes(folder / "same.npy"));
 }
 
@@ -254,7 +296,7 @@ TEST(ToolVoxels, GridMayCutTheMeshOrMissIt) {
     const TemporaryFolder folder;
     writePly(folder / "plane.ply", reference::makePlane({0, 0, 0}, {0, 0, 1}, 8));
     const NpyArray part = voxelsOf({folder / "plane.ply", "--bounds", "-1", "-.5", "-1e0", "1",
-                                    "+.5", "1", "--grid", "4", "2", "4"},
+                                    "+.5", "1", "--grid", "4", "2", "4", "--coverage", "filled"},
                                    folder / "part.npy");
     EXPECT_EQ(wrongVoxels(part, [](const glm::uvec3& voxel,
                                    bool isSet) { return isSet == (voxel.z == 2); }),
@@ -286,9 +328,9 @@ TEST(ToolVoxels, RealMeshesStayWithinTheReferences) {
     for (const auto& entry : std::filesystem::directory_iterator(directory)) {
         if (entry.path().extension() != ".ply" && entry.path().extension() != ".obj")
             continue;
-        const NpyArray array =
-            voxelsOf({entry.path().string(), "-r", "100", "--stats", folder / "mesh.json"},
-                     folder / "mesh.npy");
+        const NpyArray array = voxelsOf({entry.path().string(), "-r", "100", "--coverage", "filled",
+                                         "--stats", folder / "mesh.json"},
+                                        folder / "mesh.npy");
         const auto mesh = readMesh(entry.path());
         ASSERT_TRUE(mesh.hasValue()) << entry.path();
         expectFilledWithin(*mesh, entry.path().string(), folder / "mesh.json", array);

@@ -26,9 +26,9 @@ struct Choice {
 inline constexpr std::array kCoverages{
     Choice<Coverage>{"sampled", Coverage::Sampled},
     Choice<Coverage>{"filled", Coverage::Filled},
-    Choice<Coverage>{"conservative"},
-    Choice<Coverage>{"separating6"},
-    Choice<Coverage>{"solid"},
+    Choice<Coverage>{"conservative", Coverage::Conservative},
+    Choice<Coverage>{"separating6", Coverage::Separating6},
+    Choice<Coverage>{"solid", Coverage::Solid},
 };
 
 inline constexpr std::array kBackends{
@@ -37,7 +37,7 @@ inline constexpr std::array kBackends{
     Choice<Backend>{"local_slicemap"},
     Choice<Backend>{"mrt_slicemap"},
     Choice<Backend>{"volume"},
-    Choice<Backend>{"overlap"},
+    Choice<Backend>{"overlap", Backend::Overlap},
 };
 
 inline constexpr std::array kContexts{

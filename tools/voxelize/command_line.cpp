@@ -63,7 +63,7 @@ struct Arguments {
     std::vector<double> bounds;
     std::vector<std::uint32_t> counts;
     std::string axis = "auto";
-    std::string coverage = "filled";
+    std::string coverage = "conservative";
     std::string backend = "auto";
     std::string context = "auto";
     std::string up = "y";
@@ -122,8 +122,7 @@ void addMethodOptions(CLI::App& app, Arguments& args) {
     const std::string group = "Method";
     app.add_option(
            "--coverage", args.coverage,
-           fmt::format("Which voxels count as hit: {} (default filled); this version serves {}",
-                       words(kCoverages), words(kCoverages, true)))
+           fmt::format("Which voxels count as hit: {} (default conservative)", words(kCoverages)))
         ->type_name("WORD")
         ->group(group);
     app.add_option("--backend", args.backend,

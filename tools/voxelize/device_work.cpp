@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 #include <utility>
 
 namespace lamina::tool {
@@ -81,7 +82,10 @@ BitGrid voxelizeOnDevice(const Request& request, TriangleMesh mesh, StageClock& 
                                std::string(name(request.coverage)),
                                stats.passes,
                                stats.gridBytes,
-                               bits.count()};
+                               bits.count(),
+                               std::nullopt};
+    if (request.coverage == Coverage::Solid)
+        record.voxels->oddColumns = require(voxelizer->downloadSolidReport()).oddColumns;
     return bits;
 }
 

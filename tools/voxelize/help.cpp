@@ -31,14 +31,17 @@ Reads .obj .ply .stl .off; writes .npy .binvox .vox .vti .vdb, and pictures (.pn
 )";
 
 const char* const kHelpFooter = R"(Coverage:
-  sampled  in each column of voxels, the one where the surface meets the column's centre line;
-           leaves holes where the surface is steep
-  filled   as sampled, and every voxel that the triangle spans in that column: no holes along the
-           columns
-  Both look along one axis (--axis). A triangle sets voxels only in columns whose centre it covers:
-  one that is edge-on to the axis sets none, and a steep surface may show gaps between columns. The
-  union of three axes is not made. The default axis is the one along which the triangles cover the
-  most columns.
+  conservative  every voxel that a triangle touches (default); a face on the boundary between two
+                voxels sets both
+  separating6   a thinner surface without gaps: no path through faces of voxels leads across it
+  solid         the inside of a closed mesh: voxels whose centre lies inside; --stats and a warning
+                tell of columns where the mesh is not closed
+  filled        in each column of voxels whose centre line the triangle crosses, every voxel that it
+                spans there; steep surfaces show gaps between columns
+  sampled       in each such column only the voxel where the surface meets the centre line; steep
+                surfaces show holes
+  filled and sampled look along one axis (--axis) and are what an engine's rasterizer makes every
+  frame. The default axis is the one along which the triangles cover the most columns.
 
 Grid:
   Give one of -r, --voxel-size, or --bounds with --grid. The first two make cubes from the low

@@ -103,6 +103,8 @@ std::string statsJson(const RunRecord& record) {
         json["voxels"] = {{"set", voxels.set},
                           {"share", static_cast<double>(voxels.set) / voxelCount(*record.grid)},
                           {"coverage", voxels.coverage}};
+        if (voxels.oddColumns)
+            json["voxels"]["odd_columns"] = *voxels.oddColumns;
         json["backend"] = {{"name", voxels.backend},
                            {"reason", voxels.reason},
                            {"passes", voxels.passes},

@@ -109,12 +109,25 @@ void writeStats(const StatsRequest& stats, const RunRecord& record) {
     require(file.commit());
 }
 
+/// Columns of voxels along the axis of projection.
+std::uint64_t columnCount(const GridPlan& grid) {
+    const glm::uvec3 axes = boxGridAxes(grid.axis);
+    return std::uint64_t{grid.counts[axes.x]} * grid.counts[axes.y];
+}
+
 void tell(const Request& request, const RunRecord& record) {
     if (!request.quiet && record.voxels && record.voxels->set == 0)
         fmt::print(
             stderr,
             "lamina-voxelize: warning: no voxel is set; the mesh lies outside the grid, or its "
-            "triangles are edge-on to the axis\n");
+            "triangles are edge-on to the axis (filled, sampled) or enclose nothing (solid)\n");
+    if (!request.quiet && record.voxels && record.voxels->oddColumns.value_or(0) > 0)
+        fmt::print(
+            stderr,
+            "lamina-voxelize: warning: the mesh is not closed: {} of {} columns are crossed an "
+            "odd number of times and are filled up to their last crossing; repair the mesh, or "
+            "use --coverage conservative\n",
+            *record.voxels->oddColumns, columnCount(*record.grid));
     if (request.verbose || (!request.quiet && isatty(STDERR_FILENO) == 1))
         fmt::print(stderr, "{}", summary(record));
 }

@@ -36,6 +36,7 @@ struct VoxelFacts {
     std::uint32_t passes = 0;
     std::uint64_t deviceBytes = 0;
     std::uint64_t set = 0;
+    std::optional<std::uint64_t> oddColumns; ///< Of solid coverage: where the mesh is not closed.
 };
 
 struct FileFacts {
