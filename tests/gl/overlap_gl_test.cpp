@@ -207,11 +207,18 @@ TEST_F(OverlapGlTest, MoreTrianglesThanADispatchTakes) {
     const TriangleMesh many = ref::makeTorusKnot({0, 0, 0}, 0.6f, 0.15f, 3, 5, 4096, 40);
     ASSERT_GT(many.triangles.size(), 262144u);
     expectOverlap(many, GridTransform::box(kUnitBox, {128, 120, 140}).value(), "small");
-    // More large ones than one dimension of a dispatch takes.
-    const TriangleMesh large = ref::makeTriangleSoup(kUnitBox, 70000, 1.4f, 5);
-    expectOverlap(large,
-                  GridTransform::box({{-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}}, {40, 40, 40}).value(),
-                  "large");
+    // More large ones than one dimension of a dispatch takes: a segment in each row of 40 voxels.
+    TriangleMesh rows;
+    for (std::uint32_t i = 0; i < 70000; ++i) {
+        const glm::vec3 center(0, static_cast<float>(i % 300) + 0.5f,
+                               static_cast<float>(i / 300) + 0.5f);
+        rows.positions.push_back(center + glm::vec3(0.5f, 0, 0));
+        rows.positions.push_back(center + glm::vec3(39.5f, 0, 0));
+        rows.triangles.emplace_back(i * 2, i * 2 + 1, i * 2 + 1);
+    }
+    const GridTransform grid =
+        GridTransform::box({{0, 0, 0}, {40, 300, 300}}, {40, 300, 300}).value();
+    EXPECT_EQ(voxelize(Coverage::Conservative, rows, grid).count(), 70000u * 40u);
 }
 
 TEST_F(OverlapGlTest, GridsOfManyPartsAgreeWithTheReference) {

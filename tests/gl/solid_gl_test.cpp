@@ -67,7 +67,7 @@ void SolidGlTest::expectInside(const BitGrid& found, const TriangleMesh& mesh,
     const BitGrid expected = ref::inside(mesh, transform).value();
     const BitGridComparison comparison = compare(found, expected).value();
     const std::uint64_t differing = comparison.onlyFirst + comparison.onlySecond;
-    EXPECT_LE(differing * 100000, expected.count())
+    ASSERT_LE(differing * 100000, expected.count())
         << name << ": " << differing << " voxels differ";
     EXPECT_GT(expected.count(), 0u) << name;
     if (differing == 0)
