@@ -3,6 +3,7 @@
 //   #define LAMINA_GRID_COUNT 2            // grids in use, 1 (default) to 8
 //   #define LAMINA_GRID_BLOCK_BINDING 3    // uniform buffers 3, 4 (default 0)
 //   #define LAMINA_GRID_TEXTURE_UNIT 5     // texture units 5, 6 (default 0)
+//   #define LAMINA_GRID_BUFFER_STORE 1     // all of them in buffers (VoxelGrid::store()), default 0
 //   #include <lamina/grid.glsl>
 //
 // VoxelGrid::bind() puts grid number g on uniform buffer LAMINA_GRID_BLOCK_BINDING + g and texture
@@ -11,6 +12,7 @@
 //
 // Precision: single. A point within about 1e-6 of the grid's extent from a voxel's face may answer for
 // the voxel on the other side.
+// permute LAMINA_GRID_BUFFER_STORE = 0 1
 #ifndef LAMINA_GRID_GLSL
 #define LAMINA_GRID_GLSL
 
@@ -25,13 +27,22 @@
 #ifndef LAMINA_GRID_TEXTURE_UNIT
 #define LAMINA_GRID_TEXTURE_UNIT 0
 #endif
+#ifndef LAMINA_GRID_BUFFER_STORE
+#define LAMINA_GRID_BUFFER_STORE 0
+#endif
 
 layout(std140, binding = LAMINA_GRID_BLOCK_BINDING) uniform LaminaGridBlock {
     LaminaGridConstants constants;
     vec4 boundaries[LAMINA_MAX_SLICE_BOUNDARIES / 4];
 } laminaGrid[LAMINA_GRID_COUNT];
 
+#if LAMINA_GRID_BUFFER_STORE
+layout(binding = LAMINA_GRID_TEXTURE_UNIT) uniform usamplerBuffer laminaGridWords[LAMINA_GRID_COUNT];
+#define LAMINA_FETCH_WORD(words) texelFetch(words, texel)
+#else
 layout(binding = LAMINA_GRID_TEXTURE_UNIT) uniform usampler2DArray laminaGridWords[LAMINA_GRID_COUNT];
+#define LAMINA_FETCH_WORD(words) texelFetch(words, texel, 0)
+#endif
 
 // Columns in x, columns in y, slices.
 uvec3 laminaGridSize(int grid) {
@@ -72,41 +83,48 @@ vec3 laminaWorldToGrid(int grid, vec3 world, out bool inside) {
     return vec3(column, laminaSliceCoordinate(grid, depth));
 }
 
-// One texel of a grid's texture. The sampler is chosen by comparisons: llvmpipe (Mesa 22.3) changes
-// bits of integer texels, where they form a signalling NaN, fetched by a dynamic sampler index.
-uvec4 laminaFetchWord(int grid, ivec3 texel) {
+// One texel of a grid: column (x, y), layer z. The sampler is chosen by comparisons: llvmpipe (Mesa
+// 22.3) changes bits of integer texels, where they form a signalling NaN, fetched by a dynamic sampler
+// index.
+uvec4 laminaFetchWord(int grid, ivec3 place) {
 #if LAMINA_GRID_COUNT > 8
 #error "lamina/grid.glsl: LAMINA_GRID_COUNT is at most 8"
 #endif
+#if LAMINA_GRID_BUFFER_STORE
+    ivec2 columns = ivec2(laminaGrid[grid].constants.size.xy);
+    int texel = (place.z * columns.y + place.y) * columns.x + place.x;
+#else
+    ivec3 texel = place;
+#endif
 #if LAMINA_GRID_COUNT > 7
     if (grid == 7)
-        return texelFetch(laminaGridWords[7], texel, 0);
+        return LAMINA_FETCH_WORD(laminaGridWords[7]);
 #endif
 #if LAMINA_GRID_COUNT > 6
     if (grid == 6)
-        return texelFetch(laminaGridWords[6], texel, 0);
+        return LAMINA_FETCH_WORD(laminaGridWords[6]);
 #endif
 #if LAMINA_GRID_COUNT > 5
     if (grid == 5)
-        return texelFetch(laminaGridWords[5], texel, 0);
+        return LAMINA_FETCH_WORD(laminaGridWords[5]);
 #endif
 #if LAMINA_GRID_COUNT > 4
     if (grid == 4)
-        return texelFetch(laminaGridWords[4], texel, 0);
+        return LAMINA_FETCH_WORD(laminaGridWords[4]);
 #endif
 #if LAMINA_GRID_COUNT > 3
     if (grid == 3)
-        return texelFetch(laminaGridWords[3], texel, 0);
+        return LAMINA_FETCH_WORD(laminaGridWords[3]);
 #endif
 #if LAMINA_GRID_COUNT > 2
     if (grid == 2)
-        return texelFetch(laminaGridWords[2], texel, 0);
+        return LAMINA_FETCH_WORD(laminaGridWords[2]);
 #endif
 #if LAMINA_GRID_COUNT > 1
     if (grid == 1)
-        return texelFetch(laminaGridWords[1], texel, 0);
+        return LAMINA_FETCH_WORD(laminaGridWords[1]);
 #endif
-    return texelFetch(laminaGridWords[0], texel, 0);
+    return LAMINA_FETCH_WORD(laminaGridWords[0]);
 }
 
 // The 128 bits of slices [128 group, 128 group + 128) of a column: bit (k & 31) of component

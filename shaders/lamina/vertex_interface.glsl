@@ -6,3 +6,7 @@ struct LaminaVertex {
     vec3 normal;   // World space; need not have unit length; zero if unknown.
     uint material; // Index into the material table.
 };
+
+// RGBA in [0,1]; laminaVertex() may assign it. Backends that record colours multiply it by the
+// material's.
+vec4 laminaVertexColor = vec4(1.0);

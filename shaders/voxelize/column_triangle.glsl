@@ -41,3 +41,28 @@ double laminaPlaneValue(LaminaColumnTriangle triangle, dvec2 point) {
     precise double value = triangle.depthPlane.z + triangle.depthPlane.x * offset.x + triangle.depthPlane.y * offset.y;
     return value;
 }
+
+// The edge from a to b of a triangle whose interior lies to the left if `orientation` is positive.
+dvec4 laminaOrientedEdge(dvec2 a, dvec2 b, double orientation) {
+    bool isAscending = a.x < b.x || (a.x == b.x && a.y < b.y);
+    dvec2 anchor = isAscending ? a : b;
+    dvec2 direction = (isAscending ? b - a : a - b) * ((isAscending == (orientation > 0.0lf)) ? 1.0lf : -1.0lf);
+    return dvec4(anchor, direction);
+}
+
+// Edges and depth plane of a triangle with columns p and plane values (depth or 1/depth) `values`. False
+// if its projection is degenerate: then it owns no point.
+bool laminaSetUpTriangle(dvec2 p[3], dvec3 values, inout LaminaColumnTriangle triangle) {
+    dvec2 u = p[1] - p[0];
+    dvec2 v = p[2] - p[0];
+    precise double orientation = u.x * v.y - u.y * v.x;
+    if (orientation == 0.0lf)
+        return false;
+    for (int i = 0; i < 3; ++i)
+        triangle.edges[i] = laminaOrientedEdge(p[i], p[(i + 1) % 3], orientation);
+    double du = values.y - values.x;
+    double dv = values.z - values.x;
+    triangle.depthPlane = dvec3((du * v.y - dv * u.y) / orientation, (dv * u.x - du * v.x) / orientation,
+                                triangle.edges[0].xy == p[0] ? values.x : values.y);
+    return true;
+}

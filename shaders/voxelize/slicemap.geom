@@ -43,14 +43,6 @@ void emitRectangle(dvec2 low, dvec2 high) {
     EndPrimitive();
 }
 
-// The edge from a to b of a triangle whose interior lies to the left if `orientation` is positive.
-dvec4 orientedEdge(dvec2 a, dvec2 b, double orientation) {
-    bool isAscending = a.x < b.x || (a.x == b.x && a.y < b.y);
-    dvec2 anchor = isAscending ? a : b;
-    dvec2 direction = (isAscending ? b - a : a - b) * ((isAscending == (orientation > 0.0lf)) ? 1.0lf : -1.0lf);
-    return dvec4(anchor, direction);
-}
-
 vec2 unitNormal(dvec4 edge) {
     vec2 direction = vec2(edge.zw);
     return vec2(direction.y, -direction.x) / length(direction);
@@ -114,7 +106,7 @@ void emitCut(dvec3 h[3], double cutDepth) {
         }
         dvec2 pa = a.xy / a.z;
         dvec2 pb = b.xy / b.z;
-        triangle.edges[i] = orientedEdge(pa, pb, orientation);
+        triangle.edges[i] = laminaOrientedEdge(pa, pb, orientation);
         low = min(low, min(pa, pb));
         high = max(high, max(pa, pb));
     }
@@ -155,16 +147,7 @@ void main() {
     dvec2 high = max(p[0], max(p[1], p[2]));
     if (any(greaterThan(low, dvec2(laminaDraw.size.xy))) || any(lessThan(high, dvec2(0.0lf))))
         return;
-    dvec2 u = p[1] - p[0];
-    dvec2 v = p[2] - p[0];
-    precise double orientation = u.x * v.y - u.y * v.x;
-    if (orientation == 0.0lf)
+    if (!laminaSetUpTriangle(p, values, triangle))
         return;
-    for (int i = 0; i < 3; ++i)
-        triangle.edges[i] = orientedEdge(p[i], p[(i + 1) % 3], orientation);
-    double du = values.y - values.x;
-    double dv = values.z - values.x;
-    triangle.depthPlane = dvec3((du * v.y - dv * u.y) / orientation, (dv * u.x - du * v.x) / orientation,
-                                triangle.edges[0].xy == p[0] ? values.x : values.y);
     emitDilated(p);
 }

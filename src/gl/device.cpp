@@ -35,6 +35,14 @@ DeviceLimits readLimits(const GladGLContext& gl) {
     limits.maxCombinedTextureUnits = limit(gl, GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS);
     limits.uniformBufferOffsetAlignment =
         std::max(limit(gl, GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT), 1u);
+    limits.maxTextureBufferTexels = limit(gl, GL_MAX_TEXTURE_BUFFER_SIZE);
+    // Some drivers do not enforce it: a binding may be larger, and shaders then lose what is
+    // beyond.
+    GLint64 storageBlock = 0;
+    gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storageBlock);
+    limits.maxStorageBlockBytes = static_cast<std::uint64_t>(std::max<GLint64>(storageBlock, 0));
+    limits.storageBufferOffsetAlignment =
+        std::max(limit(gl, GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT), 1u);
     limits.subpixelBits = limit(gl, GL_SUBPIXEL_BITS);
     return limits;
 }

@@ -22,6 +22,8 @@ GLenum identifier(ObjectKind kind) {
         return GL_PROGRAM;
     case ObjectKind::Query:
         return GL_QUERY;
+    case ObjectKind::TransformFeedback:
+        return GL_TRANSFORM_FEEDBACK;
     }
     return GL_NONE;
 }
@@ -49,6 +51,9 @@ GLuint createObject(DeviceState& device, ObjectKind kind, GLenum target) {
     case ObjectKind::Query:
         device.gl.CreateQueries(target, 1, &id);
         break;
+    case ObjectKind::TransformFeedback:
+        device.gl.CreateTransformFeedbacks(1, &id);
+        break;
     }
     return id;
 }
@@ -73,6 +78,9 @@ void destroyObject(DeviceState& device, ObjectKind kind, GLuint id, std::uint64_
         break;
     case ObjectKind::Query:
         device.gl.DeleteQueries(1, &id);
+        break;
+    case ObjectKind::TransformFeedback:
+        device.gl.DeleteTransformFeedbacks(1, &id);
         break;
     }
 }
@@ -169,6 +177,37 @@ Result<Texture> createTextureArray(const std::shared_ptr<DeviceState>& device,
     device->gl.TextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     device->gl.TextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     device->gl.TextureParameteri(texture.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return texture;
+}
+
+Result<Texture> createTexture3d(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
+                                std::uint32_t bytesPerTexel, std::uint32_t width,
+                                std::uint32_t height, std::uint32_t depth,
+                                std::string_view operation, std::string_view label) {
+    GLint limit = 0;
+    device->gl.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
+    if (const auto most = static_cast<std::uint32_t>(limit);
+        width > most || height > most || depth > most)
+        return Error{ErrorCode::DeviceLimit,
+                     std::string(operation) + ": needs a 3D texture of " + std::to_string(width) +
+                         " x " + std::to_string(height) + " x " + std::to_string(depth) +
+                         ", the device's limit is " + std::to_string(most) +
+                         " each way; use a smaller grid"};
+    const std::uint64_t bytes = std::uint64_t{bytesPerTexel} * width * height * depth;
+    if (auto fits = checkBudget(*device, bytes, operation); !fits)
+        return fits.error();
+    Texture texture = Texture::create(device, label, GL_TEXTURE_3D);
+    const auto stored = allocate(*device, bytes, operation, [&] {
+        device->gl.TextureStorage3D(texture.id(), 1, internalFormat, static_cast<GLsizei>(width),
+                                    static_cast<GLsizei>(height), static_cast<GLsizei>(depth));
+    });
+    if (!stored)
+        return stored.error();
+    texture.setBytes(bytes);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        device->gl.TextureParameteri(texture.id(), filter, GL_NEAREST);
+    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+        device->gl.TextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
     return texture;
 }
 

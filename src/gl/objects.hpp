@@ -14,7 +14,15 @@ namespace lamina::gl {
 
 struct DeviceState;
 
-enum class ObjectKind : std::uint8_t { Buffer, Texture, Framebuffer, VertexArray, Program, Query };
+enum class ObjectKind : std::uint8_t {
+    Buffer,
+    Texture,
+    Framebuffer,
+    VertexArray,
+    Program,
+    Query,
+    TransformFeedback
+};
 enum class Ownership : std::uint8_t { Owned, Borrowed };
 
 namespace detail {
@@ -98,6 +106,7 @@ using Framebuffer = Object<ObjectKind::Framebuffer>;
 using VertexArray = Object<ObjectKind::VertexArray>;
 using Program = Object<ObjectKind::Program>;
 using Query = Object<ObjectKind::Query>;
+using TransformFeedback = Object<ObjectKind::TransformFeedback>;
 
 /// A buffer with immutable storage of `bytes`, initialised from `data` unless null.
 /// storageFlags: as for glNamedBufferStorage. `operation` names the caller in errors.
@@ -112,5 +121,13 @@ createBuffer(const std::shared_ptr<DeviceState>& device, std::uint64_t bytes, co
 createTextureArray(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
                    std::uint32_t bytesPerTexel, std::uint32_t width, std::uint32_t height,
                    std::uint32_t layers, std::string_view operation, std::string_view label);
+
+/// A one-level 3D texture with nearest filtering and clamped edges. bytesPerTexel: of
+/// `internalFormat`.
+/// Errors: DeviceLimit, OutOfMemory.
+[[nodiscard]] LAMINA_API Result<Texture>
+createTexture3d(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
+                std::uint32_t bytesPerTexel, std::uint32_t width, std::uint32_t height,
+                std::uint32_t depth, std::string_view operation, std::string_view label);
 
 } // namespace lamina::gl

@@ -51,8 +51,56 @@ void restorePixelStore(const GladGLContext& gl, std::span<const int> names,
 
 } // namespace
 
+IndexedBufferBindings::IndexedBufferBindings(const GladGLContext& gl, GLenum target, GLuint count)
+    : mTarget(target)
+    , mBindings(count) {
+    const bool isStorage = target == GL_SHADER_STORAGE_BUFFER;
+    for (GLuint i = 0; i < count; ++i) {
+        Binding& binding = mBindings[i];
+        gl.GetIntegeri_v(isStorage ? GL_SHADER_STORAGE_BUFFER_BINDING : GL_UNIFORM_BUFFER_BINDING,
+                         i, &binding.buffer);
+        gl.GetInteger64i_v(isStorage ? GL_SHADER_STORAGE_BUFFER_START : GL_UNIFORM_BUFFER_START, i,
+                           &binding.offset);
+        gl.GetInteger64i_v(isStorage ? GL_SHADER_STORAGE_BUFFER_SIZE : GL_UNIFORM_BUFFER_SIZE, i,
+                           &binding.size);
+    }
+}
+
+void IndexedBufferBindings::restore(const GladGLContext& gl) const {
+    // Multi-bind leaves the generic binding alone.
+    for (GLuint i = 0; i < mBindings.size(); ++i) {
+        const Binding& binding = mBindings[i];
+        const auto buffer = static_cast<GLuint>(binding.buffer);
+        const auto offset = static_cast<GLintptr>(binding.offset);
+        const auto size = static_cast<GLsizeiptr>(binding.size);
+        if (buffer != 0 && size != 0)
+            gl.BindBuffersRange(mTarget, i, 1, &buffer, &offset, &size);
+        else
+            gl.BindBuffersBase(mTarget, i, 1, &buffer);
+    }
+}
+
+FeedbackPause::FeedbackPause(const GladGLContext& gl) {
+    GLboolean active = GL_FALSE;
+    GLboolean paused = GL_FALSE;
+    gl.GetBooleanv(GL_TRANSFORM_FEEDBACK_ACTIVE, &active);
+    gl.GetBooleanv(GL_TRANSFORM_FEEDBACK_PAUSED, &paused);
+    mObject = integer(gl, GL_TRANSFORM_FEEDBACK_BINDING);
+    mPaused = active && !paused;
+    if (mPaused)
+        gl.PauseTransformFeedback();
+}
+
+void FeedbackPause::resume(const GladGLContext& gl) const {
+    gl.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, static_cast<GLuint>(mObject));
+    if (mPaused)
+        gl.ResumeTransformFeedback();
+}
+
 RasterStateGuard::RasterStateGuard(DeviceState& device, GLuint uniformBuffers)
-    : mDevice(device) {
+    : mDevice(device)
+    , mUniformBuffers(device.gl, GL_UNIFORM_BUFFER, uniformBuffers)
+    , mFeedback(device.gl) {
     const GladGLContext& gl = device.gl;
     for (const int capability : kDisabled) {
         const auto cap = static_cast<GLenum>(capability);
@@ -76,22 +124,8 @@ RasterStateGuard::RasterStateGuard(DeviceState& device, GLuint uniformBuffers)
         gl.GetBooleani_v(GL_COLOR_WRITEMASK, i, mColorMasks[i].data());
         gl.ColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     }
-    mUniformBuffers.resize(uniformBuffers);
-    for (GLuint i = 0; i < uniformBuffers; ++i) {
-        gl.GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, i, &mUniformBuffers[i].buffer);
-        gl.GetInteger64i_v(GL_UNIFORM_BUFFER_START, i, &mUniformBuffers[i].offset);
-        gl.GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, i, &mUniformBuffers[i].size);
-    }
     mDrawFramebuffer = integer(gl, GL_DRAW_FRAMEBUFFER_BINDING);
     mVertexArray = integer(gl, GL_VERTEX_ARRAY_BINDING);
-
-    GLboolean active = GL_FALSE;
-    GLboolean paused = GL_FALSE;
-    gl.GetBooleanv(GL_TRANSFORM_FEEDBACK_ACTIVE, &active);
-    gl.GetBooleanv(GL_TRANSFORM_FEEDBACK_PAUSED, &paused);
-    mFeedbackPaused = active && !paused;
-    if (mFeedbackPaused)
-        gl.PauseTransformFeedback();
     mProgram = integer(gl, GL_CURRENT_PROGRAM);
 }
 
@@ -110,27 +144,34 @@ RasterStateGuard::~RasterStateGuard() {
         const auto& mask = mColorMasks[i];
         gl.ColorMaski(i, mask[0], mask[1], mask[2], mask[3]);
     }
-    // Multi-bind leaves the generic uniform buffer binding alone.
-    for (GLuint i = 0; i < mUniformBuffers.size(); ++i) {
-        const BufferBinding& binding = mUniformBuffers[i];
-        const auto buffer = static_cast<GLuint>(binding.buffer);
-        const auto offset = static_cast<GLintptr>(binding.offset);
-        const auto size = static_cast<GLsizeiptr>(binding.size);
-        if (buffer != 0 && size != 0)
-            gl.BindBuffersRange(GL_UNIFORM_BUFFER, i, 1, &buffer, &offset, &size);
-        else
-            gl.BindBuffersBase(GL_UNIFORM_BUFFER, i, 1, &buffer);
-    }
+    mUniformBuffers.restore(gl);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(mDrawFramebuffer));
     gl.BindVertexArray(static_cast<GLuint>(mVertexArray));
     gl.UseProgram(static_cast<GLuint>(mProgram));
-    if (mFeedbackPaused)
-        gl.ResumeTransformFeedback();
+    mFeedback.resume(gl);
 }
 
 void RasterStateGuard::setHostPrimitiveRestart(bool asHost) {
     setEnabled(mDevice.gl, GL_PRIMITIVE_RESTART, asHost && mRestart);
     setEnabled(mDevice.gl, GL_PRIMITIVE_RESTART_FIXED_INDEX, asHost && mRestartFixed);
+}
+
+ComputeStateGuard::ComputeStateGuard(DeviceState& device, GLuint uniformBuffers,
+                                     GLuint storageBuffers)
+    : mDevice(device)
+    , mUniformBuffers(device.gl, GL_UNIFORM_BUFFER, uniformBuffers)
+    , mStorageBuffers(device.gl, GL_SHADER_STORAGE_BUFFER, storageBuffers)
+    , mFeedback(device.gl)
+    , mProgram(integer(device.gl, GL_CURRENT_PROGRAM))
+    , mIndirectBuffer(integer(device.gl, GL_DISPATCH_INDIRECT_BUFFER_BINDING)) {}
+
+ComputeStateGuard::~ComputeStateGuard() {
+    const GladGLContext& gl = mDevice.gl;
+    mUniformBuffers.restore(gl);
+    mStorageBuffers.restore(gl);
+    gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, static_cast<GLuint>(mIndirectBuffer));
+    gl.UseProgram(static_cast<GLuint>(mProgram));
+    mFeedback.resume(gl);
 }
 
 PixelPackGuard::PixelPackGuard(DeviceState& device)

@@ -7,11 +7,42 @@
 
 namespace lamina::gl {
 
+/// Bindings [0, count) of an indexed buffer target, saved and put back. The generic binding of the
+/// target is not touched.
+class IndexedBufferBindings {
+public:
+    LAMINA_API IndexedBufferBindings(const GladGLContext& gl, GLenum target, GLuint count);
+    LAMINA_API void restore(const GladGLContext& gl) const;
+
+private:
+    struct Binding {
+        GLint buffer;
+        GLint64 offset;
+        GLint64 size;
+    };
+
+    GLenum mTarget;
+    std::vector<Binding> mBindings;
+};
+
+/// Pauses the host's transform feedback, without which neither programs nor feedback objects can be
+/// bound, and resumes it.
+class FeedbackPause {
+public:
+    LAMINA_API explicit FeedbackPause(const GladGLContext& gl);
+    /// After the host's program is bound again.
+    LAMINA_API void resume(const GladGLContext& gl) const;
+
+private:
+    GLint mObject = 0;
+    bool mPaused = false;
+};
+
 /// Saves the GL state that a raster pass touches and puts it back when it goes out of scope.
 /// Between, the state is what a pass expects: no culling, no scissor, no logic op, all colours
 /// written, filled polygons, default clip control, no clip distances, no primitive restart,
-/// transform feedback paused. Passes draw to framebuffers without depth or stencil, where those
-/// tests never apply.
+/// transform feedback paused, its object free to be rebound. Passes draw to framebuffers without
+/// depth or stencil, where those tests never apply.
 class RasterStateGuard {
 public:
     /// uniformBuffers: uniform buffer bindings [0, uniformBuffers) that the pass rebinds.
@@ -28,15 +59,11 @@ private:
         GLenum name;
         GLboolean wasEnabled;
     };
-    struct BufferBinding {
-        GLint buffer;
-        GLint64 offset;
-        GLint64 size;
-    };
 
     DeviceState& mDevice;
+    IndexedBufferBindings mUniformBuffers;
+    FeedbackPause mFeedback;
     std::vector<Capability> mCapabilities;
-    std::vector<BufferBinding> mUniformBuffers;
     std::vector<std::array<GLboolean, 4>> mColorMasks;
     std::array<GLfloat, 4> mViewport{};
     GLboolean mScissor = GL_FALSE;
@@ -49,7 +76,26 @@ private:
     GLint mDrawFramebuffer = 0;
     GLint mProgram = 0;
     GLint mVertexArray = 0;
-    bool mFeedbackPaused = false;
+};
+
+/// Saves the GL state that a compute pass touches (program, indexed buffer bindings, indirect
+/// buffer) and puts it back when it goes out of scope. Between, transform feedback is paused.
+class ComputeStateGuard {
+public:
+    /// The pass rebinds uniform buffers [0, uniformBuffers) and storage buffers [0,
+    /// storageBuffers).
+    LAMINA_API ComputeStateGuard(DeviceState& device, GLuint uniformBuffers, GLuint storageBuffers);
+    LAMINA_API ~ComputeStateGuard();
+    ComputeStateGuard(const ComputeStateGuard&) = delete;
+    ComputeStateGuard& operator=(const ComputeStateGuard&) = delete;
+
+private:
+    DeviceState& mDevice;
+    IndexedBufferBindings mUniformBuffers;
+    IndexedBufferBindings mStorageBuffers;
+    FeedbackPause mFeedback;
+    GLint mProgram = 0;
+    GLint mIndirectBuffer = 0;
 };
 
 /// Saves the pixel pack state and buffer, and sets the defaults, for a read-back.

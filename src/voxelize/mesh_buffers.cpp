@@ -2,11 +2,15 @@
 
 #include <lamina/voxelize/geometry_source.hpp>
 
+#include <span>
+
 namespace lamina {
 
 struct MeshBuffers::Impl {
     gl::Buffer vertices;
     gl::Buffer indices;
+    gl::Buffer normals;
+    gl::Buffer colors;
     std::uint32_t vertexCount = 0;
     std::uint32_t indexCount = 0;
 };
@@ -36,6 +40,20 @@ Result<MeshBuffers> MeshBuffers::upload(const Device& device, const TriangleMesh
                                     mesh.triangles.data(), 0, "mesh upload", "lamina indices");
     if (!indices)
         return indices.error();
+    const auto uploadStream = [&](const auto& values, gl::Buffer& buffer, const char* label) {
+        if (values.empty())
+            return Result<void>();
+        auto stored = gl::createBuffer(device.state(), std::span(values).size_bytes(),
+                                       values.data(), 0, "mesh upload", label);
+        if (!stored)
+            return Result<void>(stored.error());
+        buffer = std::move(*stored);
+        return Result<void>();
+    };
+    if (auto stored = uploadStream(mesh.normals, impl->normals, "lamina normals"); !stored)
+        return stored.error();
+    if (auto stored = uploadStream(mesh.colors, impl->colors, "lamina colors"); !stored)
+        return stored.error();
     impl->vertices = std::move(*vertices);
     impl->indices = std::move(*indices);
     impl->vertexCount = static_cast<std::uint32_t>(mesh.positions.size());
@@ -51,11 +69,14 @@ MeshView MeshBuffers::view(const glm::mat4& model) const {
     view.indexType = IndexType::UInt32;
     view.indexCount = mImpl->indexCount;
     view.model = model;
+    view.normals = {mImpl->normals.id(), 0, sizeof(glm::vec3)};
+    view.colors = {mImpl->colors.id(), 0, sizeof(glm::vec4)};
     return view;
 }
 
 std::uint64_t MeshBuffers::gpuBytes() const {
-    return mImpl->vertices.bytes() + mImpl->indices.bytes();
+    return mImpl->vertices.bytes() + mImpl->indices.bytes() + mImpl->normals.bytes() +
+           mImpl->colors.bytes();
 }
 
 } // namespace lamina

@@ -94,6 +94,15 @@ Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view, 
     return {};
 }
 
+Result<void> checkDrawSource(const DrawSource& source, std::size_t index) {
+    if (source.vertexShader.empty() || !source.draw)
+        return Error{ErrorCode::InvalidArgument,
+                     "voxelize: source " + std::to_string(index) +
+                         ": expected a DrawSource with a vertex stage and a draw callback, found "
+                         "one without"};
+    return {};
+}
+
 void drawMeshView(gl::DeviceState& device, GLuint vertexArray, const MeshView& view) {
     const GladGLContext& gl = device.gl;
     gl.VertexArrayVertexBuffer(vertexArray, 0, view.vertexBuffer,

@@ -13,6 +13,9 @@ namespace lamina {
 [[nodiscard]] Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view,
                                          std::size_t index);
 
+/// Checks that a DrawSource has a vertex stage and a callback. `index`: as above.
+[[nodiscard]] Result<void> checkDrawSource(const DrawSource& source, std::size_t index);
+
 /// Triangles a MeshView draws.
 [[nodiscard]] std::uint64_t triangleCount(const MeshView& view);
 

@@ -47,6 +47,7 @@ public:
         capabilities.maxSlices = limits.maxArrayTextureLayers * BitGrid::kSlicesPerGroup;
         capabilities.slicesPerPass = BitGrid::kSlicesPerGroup;
         capabilities.perspective = true;
+        capabilities.anyDistribution = true;
         capabilities.drawSources = true;
         return capabilities;
     }
@@ -107,11 +108,8 @@ SlicemapVoxelizer::prepare(std::span<const GeometrySource> sources, const GridTr
             built = meshProgram();
         } else {
             const auto& source = std::get<DrawSource>(sources[i]);
-            if (source.vertexShader.empty() || !source.draw)
-                return Error{ErrorCode::InvalidArgument,
-                             "voxelize: source " + std::to_string(i) +
-                                 ": expected a DrawSource with a vertex stage and a draw callback, "
-                                 "found one without"};
+            if (auto valid = checkDrawSource(source, i); !valid)
+                return valid.error();
             built = program({GL_VERTEX_SHADER, "voxelize/vertex_main.glsl", source.vertexShader});
         }
         if (!built)
@@ -202,7 +200,7 @@ Result<VoxelizeStats> SlicemapVoxelizer::voxelize(std::span<const GeometrySource
     auto prepared = prepare(sources, transform, stats);
     if (!prepared)
         return prepared.error();
-    if (auto resized = out.resize(transform); !resized)
+    if (auto resized = out.resize(transform, VoxelStore::Texture); !resized)
         return resized.error();
 
     const std::uint32_t passCount =

@@ -67,8 +67,17 @@ GridTransform perspectiveGrid(std::uint32_t slices, const SliceDistribution& dis
         .value();
 }
 
-TEST_F(GridQueryGlTest, AnswersEqualTheHosts) {
+class GridStoreGlTest : public GridQueryGlTest, public testing::WithParamInterface<VoxelStore> {};
+INSTANTIATE_TEST_SUITE_P(Stores, GridStoreGlTest,
+                         testing::Values(VoxelStore::Texture, VoxelStore::Buffer),
+                         [](const auto& store) { return std::string(name(store.param)); });
+
+TEST_P(GridStoreGlTest, AnswersEqualTheHosts) {
+    const bool isBuffer = GetParam() == VoxelStore::Buffer;
     const std::string source = "#version 450 core\n#define LAMINA_GRID_COUNT 2\n"
+                               "#define LAMINA_GRID_BUFFER_STORE " +
+                               std::to_string(isBuffer) +
+                               "\n"
                                "#define LAMINA_GRID_BLOCK_BINDING 3\n"
                                "#define LAMINA_GRID_TEXTURE_UNIT 5\n" +
                                shaderSource("lamina/grid.glsl").value() + kQueries;
@@ -85,12 +94,14 @@ TEST_F(GridQueryGlTest, AnswersEqualTheHosts) {
     };
     for (const auto& [first, second] : pairs) {
         const BitGrid bits[] = {randomBits(first, 0.3), randomBits(second, 0.6)};
-        auto gridA = VoxelGrid::create(device()).value();
-        auto gridB = VoxelGrid::create(device()).value();
+        auto gridA = VoxelGrid::create(device(), GetParam()).value();
+        auto gridB = VoxelGrid::create(device(), GetParam()).value();
         ASSERT_TRUE(gridA.upload(bits[0]));
         ASSERT_TRUE(gridB.upload(bits[1]));
         ASSERT_TRUE(compare(gridA.download().value(), bits[0])->equal());
         ASSERT_TRUE(compare(gridB.download().value(), bits[1])->equal());
+        EXPECT_EQ(gridA.store(), GetParam());
+        EXPECT_EQ(gridA.buffer() != 0, isBuffer);
         gridA.bind(3, 5, 0);
         gridB.bind(3, 5, 1);
 

@@ -1,8 +1,8 @@
 // The slicemap backend against the double-precision references.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/test_meshes.hpp"
 
-#include <lamina/mesh_io/mesh_file.hpp>
 #include <lamina/voxelize/voxelizer.hpp>
 
 #include <reference/column_triangle.hpp>
@@ -13,55 +13,13 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 namespace lamina {
 namespace {
 
 namespace ref = reference;
-
-struct NamedMesh {
-    std::string name;
-    TriangleMesh mesh;
-};
-
-/// Closed, open, thin, concave and chaotic shapes in about [-1,1]^3.
-std::vector<NamedMesh> makeShapes() {
-    const Box3 box{{-1, -1, -1}, {1, 1, 1}};
-    const float radii[] = {1.0f, 0.8f, 0.5f};
-    return {
-        {"box", ref::makeBox({-0.9f, -0.8f, -0.7f}, {0.6f, 0.7f, 0.8f})},
-        {"tetrahedron", ref::makeTetrahedron({-0.9f, -0.7f, -0.8f}, {0.9f, -0.6f, -0.5f},
-                                             {0.1f, 0.9f, -0.4f}, {0.0f, 0.1f, 0.9f})},
-        {"icosphere", ref::makeIcosphere({0, 0, 0}, 0.95f, 4)},
-        {"torus knot", ref::makeTorusKnot({0, 0, 0}, 0.55f, 0.12f, 2, 3, 256, 24)},
-        {"menger sponge", ref::makeMengerSponge({0, 0, 0}, 1.8f, 2)},
-        {"nested shells", ref::makeNestedShells({0, 0, 0}, radii, 3)},
-        {"slivers", ref::makeSlivers(box, 3000, 0.8f, 0.002f, 1)},
-        {"triangle soup", ref::makeTriangleSoup(box, 4000, 0.3f, 2)},
-        {"sloped plane", ref::makePlane({0, 0, 0}, {0.3f, 0.2f, 1.0f}, 1.6f, 7)},
-        {"steep plane", ref::makePlane({0, 0, 0}, {1.0f, 0.3f, 0.001f}, 1.2f, 3)},
-    };
-}
-
-/// Real meshes: the Debian bunny where installed, and those of LAMINA_MESH_DIR.
-std::vector<NamedMesh> readRealMeshes() {
-    std::vector<std::filesystem::path> files = {"/usr/share/glmark2/models/bunny.obj"};
-    if (const char* directory = std::getenv("LAMINA_MESH_DIR"))
-        for (const char* file : {"bunny.ply", "armadillo.ply"})
-            files.push_back(std::filesystem::path(directory) / file);
-    std::vector<NamedMesh> meshes;
-    for (const auto& file : files) {
-        if (!std::filesystem::exists(file))
-            continue;
-        auto mesh = readMesh(file);
-        EXPECT_TRUE(mesh) << mesh.error().text;
-        if (mesh)
-            meshes.push_back({file.filename().string(), std::move(*mesh)});
-    }
-    return meshes;
-}
+using test::makeShapes;
+using test::NamedMesh;
 
 GridTransform cameraGrid(Projection projection, const glm::uvec3& size,
                          const SliceDistribution& distribution = SliceDistribution::linear()) {
@@ -193,7 +151,7 @@ TEST_F(SlicemapGlTest, FilledAgreesWithTheReferenceOnAllShapes) {
 }
 
 TEST_F(SlicemapGlTest, RealMeshesAgreeWithTheReference) {
-    for (const NamedMesh& real : readRealMeshes()) {
+    for (const NamedMesh& real : test::readRealMeshes({"bunny.ply", "armadillo.ply"})) {
         const GridTransform transform =
             GridTransform::box(real.mesh.bounds(), {256, 256, 128}).value();
         const BitGrid sampled = voxelize(Coverage::Sampled, real.mesh, transform);

@@ -3,8 +3,7 @@
 
 #include "gl/support/gl_state.hpp"
 #include "gl/support/gl_test.hpp"
-
-#include <lamina/voxelize/voxelizer.hpp>
+#include "gl/support/voxelize.hpp"
 
 #include <reference/shapes.hpp>
 
@@ -57,19 +56,13 @@ TEST_F(StateGlTest, DeviceCreationChangesNothing) {
 }
 
 TEST_F(StateGlTest, EveryCallOfAVoxelizationRestoresTheState) {
-    // The expected voxels, made in the default state.
-    BitGrid expected = [&] {
-        auto buffers = MeshBuffers::upload(device(), kBox).value();
-        auto voxelizer = Voxelizer::create(device(), {.coverage = Coverage::Filled}).value();
-        auto grid = VoxelGrid::create(device()).value();
-        const GeometrySource source = buffers.view();
-        EXPECT_TRUE(voxelizer->voxelize({&source, 1}, unitGrid(200), grid));
-        return grid.download().value();
-    }();
-    ASSERT_GT(expected.count(), 0u);
-
-    const OddGlState odd(gl());
-    for (const Coverage coverage : {Coverage::Sampled, Coverage::Filled}) {
+    for (const Coverage coverage : {Coverage::Sampled, Coverage::Filled, Coverage::Conservative,
+                                    Coverage::Separating6, Coverage::Solid}) {
+        // The expected voxels, made in the default state.
+        const BitGrid expected =
+            test::voxelize(device(), {.coverage = coverage}, kBox, unitGrid(200));
+        ASSERT_GT(expected.count(), 0u);
+        const OddGlState odd(gl());
         std::optional<MeshBuffers> buffers;
         expectUnchanged("MeshBuffers::upload",
                         [&] { buffers.emplace(MeshBuffers::upload(device(), kBox).value()); });
@@ -86,12 +79,15 @@ TEST_F(StateGlTest, EveryCallOfAVoxelizationRestoresTheState) {
         });
         std::optional<BitGrid> bits;
         expectUnchanged("download", [&] { bits.emplace(grid->download().value()); });
-        if (coverage == Coverage::Filled) {
-            EXPECT_TRUE(compare(*bits, expected)->equal());
-        }
+        EXPECT_TRUE(compare(*bits, expected)->equal()) << name(coverage);
         expectUnchanged("upload", [&] { ASSERT_TRUE(grid->upload(*bits)); });
         EXPECT_TRUE(compare(grid->download().value(), *bits)->equal());
+        if (coverage == Coverage::Solid)
+            expectUnchanged("downloadSolidReport",
+                            [&] { EXPECT_EQ(voxelizer->downloadSolidReport()->oddColumns, 0u); });
         expectUnchanged("resize", [&] { ASSERT_TRUE(grid->resize(unitGrid(300))); });
+        for (const VoxelStore store : {VoxelStore::Buffer, VoxelStore::Texture})
+            expectUnchanged("resize", [&] { ASSERT_TRUE(grid->resize(unitGrid(200), store)); });
         expectUnchanged("failed voxelize", [&] {
             MeshView broken;
             const GeometrySource bad = broken;
@@ -105,8 +101,12 @@ TEST_F(StateGlTest, EveryCallOfAVoxelizationRestoresTheState) {
     }
 }
 
-TEST_F(StateGlTest, ADrawCallbackMayDisturbWhatTheGuardCovers) {
-    auto voxelizer = Voxelizer::create(device()).value();
+class DrawSourceStateGlTest : public StateGlTest, public testing::WithParamInterface<Coverage> {};
+INSTANTIATE_TEST_SUITE_P(Backends, DrawSourceStateGlTest,
+                         testing::Values(Coverage::Sampled, Coverage::Conservative));
+
+TEST_P(DrawSourceStateGlTest, ADrawCallbackMayDisturbWhatTheGuardCovers) {
+    auto voxelizer = Voxelizer::create(device(), {.coverage = GetParam()}).value();
     auto grid = VoxelGrid::create(device()).value();
     const OddGlState odd(gl());
     GLuint vertexArray = 0;
@@ -133,13 +133,14 @@ TEST_F(StateGlTest, ADrawCallbackMayDisturbWhatTheGuardCovers) {
     before.erase("GL_UNIFORM_BUFFER_BINDING");
     after.erase("GL_UNIFORM_BUFFER_BINDING");
     EXPECT_THAT(differences(before, after), testing::IsEmpty());
-    EXPECT_EQ(grid.download()->count(), 16u * 8u);
+    // Depth 0.5 is a slice boundary, of which conservative coverage sets both sides.
+    EXPECT_EQ(grid.download()->count(), GetParam() == Coverage::Sampled ? 16u * 8u : 2u * 16u * 8u);
     gl().DeleteVertexArrays(1, &vertexArray);
 }
 
-TEST_F(StateGlTest, ActiveTransformFeedbackIsPausedAndResumed) {
+TEST_P(DrawSourceStateGlTest, ActiveTransformFeedbackIsPausedAndResumed) {
     auto buffers = MeshBuffers::upload(device(), kBox).value();
-    auto voxelizer = Voxelizer::create(device()).value();
+    auto voxelizer = Voxelizer::create(device(), {.coverage = GetParam()}).value();
     auto grid = VoxelGrid::create(device()).value();
 
     const GLuint program = gl().CreateProgram();
@@ -175,6 +176,14 @@ TEST_F(StateGlTest, ActiveTransformFeedbackIsPausedAndResumed) {
     expectUnchanged("voxelize", [&] {
         ASSERT_TRUE(voxelizer->voxelize({&source, 1}, unitGrid(64), grid));
     });
+    if (voxelizer->backend() == Backend::Overlap)
+        expectUnchanged("refused voxelize", [&] {
+            const GeometrySource captured = DrawSource{"LaminaVertex laminaVertex() { return "
+                                                       "LaminaVertex(vec3(0), vec3(0), 0u); }",
+                                                       0, [](const DrawContext&) {}};
+            EXPECT_THAT(voxelizer->voxelize({&captured, 1}, unitGrid(64), grid).error().text,
+                        testing::HasSubstr("expected no active transform feedback"));
+        });
     gl().DrawArrays(GL_POINTS, 0, 2);
     gl().EndTransformFeedback();
     gl().Disable(GL_RASTERIZER_DISCARD);
@@ -206,16 +215,21 @@ TEST_F(StateGlTest, AFullDebugGroupStackIsLeftAlone) {
 }
 
 TEST_F(StateGlTest, BindChangesOnlyWhatItPromises) {
-    auto grid = VoxelGrid::create(device()).value();
-    ASSERT_TRUE(grid.upload(BitGrid::create(unitGrid(64)).value()));
-    const OddGlState odd(gl());
-    const auto before = readGlState(gl());
-    grid.bind(5, 6, 1);
-    EXPECT_THAT(
-        differences(before, readGlState(gl())),
-        testing::UnorderedElementsAre(testing::StartsWith("GL_UNIFORM_BUFFER_BINDING[6]:"),
-                                      testing::StartsWith("GL_TEXTURE_BINDING_2D_ARRAY[7]:"),
-                                      testing::StartsWith("GL_SAMPLER_BINDING[7]:")));
+    const std::pair<VoxelStore, const char*> stores[] = {
+        {VoxelStore::Texture, "GL_TEXTURE_BINDING_2D_ARRAY[7]:"},
+        {VoxelStore::Buffer, "GL_TEXTURE_BINDING_BUFFER[7]:"}};
+    for (const auto& [store, binding] : stores) {
+        auto grid = VoxelGrid::create(device(), store).value();
+        ASSERT_TRUE(grid.upload(BitGrid::create(unitGrid(64)).value()));
+        const OddGlState odd(gl());
+        const auto before = readGlState(gl());
+        grid.bind(5, 6, 1);
+        EXPECT_THAT(
+            differences(before, readGlState(gl())),
+            testing::UnorderedElementsAre(testing::StartsWith("GL_UNIFORM_BUFFER_BINDING[6]:"),
+                                          testing::StartsWith(binding),
+                                          testing::StartsWith("GL_SAMPLER_BINDING[7]:")));
+    }
 }
 
 } // namespace

@@ -398,6 +398,52 @@ TEST_F(VoxelizerGlTest, ObjectsGiveTheirMemoryBack) {
     EXPECT_THAT(VoxelGrid::create(device())->download().error().text, HasSubstr("no size"));
 }
 
+TEST_F(VoxelizerGlTest, TheStoreFollowsTheBackendAndMemoryIsGivenBack) {
+    auto buffers = MeshBuffers::upload(device(), kKnot).value();
+    auto overlap = Voxelizer::create(device(), {.coverage = Coverage::Conservative}).value();
+    const GeometrySource source = buffers.view();
+    const BitGrid sampled = voxelize(source);
+    EXPECT_EQ(mGrid->store(), VoxelStore::Texture);
+    EXPECT_EQ(mGrid->buffer(), 0u);
+    const std::uint64_t bytes = mGrid->gpuBytes();
+    ASSERT_TRUE(overlap->voxelize({&source, 1}, testGrid(), *mGrid));
+    EXPECT_EQ(mGrid->store(), overlap->capabilities().store);
+    EXPECT_EQ(mGrid->store(), VoxelStore::Buffer);
+    EXPECT_NE(mGrid->buffer(), 0u);
+    EXPECT_EQ(mGrid->gpuBytes(), bytes);
+    EXPECT_EQ(compare(sampled, mGrid->download().value())->onlyFirst, 0u);
+    EXPECT_TRUE(compare(voxelize(source), sampled)->equal());
+    EXPECT_EQ(mGrid->store(), VoxelStore::Texture);
+    EXPECT_EQ(mGrid->gpuBytes(), bytes);
+}
+
+TEST_F(VoxelizerGlTest, AutomaticPicksByCoverageAndSaysWhy) {
+    const std::pair<Coverage, Backend> expected[] = {
+        {Coverage::Sampled, Backend::Slicemap},     {Coverage::Filled, Backend::Slicemap},
+        {Coverage::Conservative, Backend::Overlap}, {Coverage::Separating6, Backend::Overlap},
+        {Coverage::Solid, Backend::Overlap},
+    };
+    for (const auto& [coverage, backend] : expected) {
+        auto voxelizer = Voxelizer::create(device(), {.coverage = coverage}).value();
+        EXPECT_EQ(voxelizer->backend(), backend);
+        EXPECT_THAT(voxelizer->reason(),
+                    AllOf(HasSubstr(std::string(name(backend))),
+                          HasSubstr(std::string(name(coverage))), HasSubstr(": it ")));
+        const auto asked = Voxelizer::create(device(), {backend, coverage}).value();
+        EXPECT_THAT(asked->reason(), HasSubstr("was asked for"));
+        const Backend other = backend == Backend::Slicemap ? Backend::Overlap : Backend::Slicemap;
+        const auto refused = Voxelizer::create(device(), {other, coverage});
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ErrorCode::Unsupported);
+        EXPECT_THAT(refused.error().text,
+                    AllOf(HasSubstr("serves " + std::string(name(coverage)) + " coverage, found " +
+                                    std::string(name(other))),
+                          HasSubstr("Backend::Automatic or " + std::string(name(backend))),
+                          HasSubstr(other == Backend::Overlap ? "coverage conservative"
+                                                              : "coverage filled")));
+    }
+}
+
 TEST_F(VoxelizerGlTest, SaysWhatItIs) {
     EXPECT_EQ(mVoxelizer->backend(), Backend::Slicemap);
     EXPECT_THAT(mVoxelizer->reason(), HasSubstr("slicemap"));

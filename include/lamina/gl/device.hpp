@@ -64,6 +64,9 @@ struct DeviceLimits {
     std::uint32_t maxUniformBufferBindings = 0;     ///< Binding points.
     std::uint32_t maxCombinedTextureUnits = 0;      ///< Texture units.
     std::uint32_t uniformBufferOffsetAlignment = 1; ///< Bytes.
+    std::uint32_t maxTextureBufferTexels = 0;       ///< Texels of a texel buffer.
+    std::uint64_t maxStorageBlockBytes = 0; ///< Bytes of a storage buffer that a shader sees.
+    std::uint32_t storageBufferOffsetAlignment = 1; ///< Bytes.
     std::uint32_t subpixelBits = 0; ///< Fraction bits of rasterized window coordinates.
 };
 

@@ -8,21 +8,35 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 namespace lamina {
 
+/// Where a VoxelGrid keeps its words. The words and their order are the same.
+enum class VoxelStore : std::uint8_t {
+    Texture, ///< GL_RGBA32UI 2D array texture, a layer per 128 slices: what raster backends draw
+             ///< to.
+    Buffer,  ///< GL buffer, seen as a GL_RGBA32UI texel buffer: what compute backends write to.
+};
+
+[[nodiscard]] LAMINA_API std::string_view name(VoxelStore store); ///< "texture"
+
 /// Voxels in GL memory, one bit each: the result of a Voxelizer, and what shaders query.
 ///
-/// A `GL_RGBA32UI` 2D array texture of columns x by columns y, one layer per 128 slices: bit (k &
-/// 31) of component (k >> 5) & 3 of layer k >> 7 is slice k. A uniform buffer holds the grid's
-/// constants.
+/// A texel is 128 slices of a column: bit (k & 31) of component (k >> 5) & 3 of layer k >> 7 is
+/// slice k. In the texture store column (x, y) of a layer is texel (x, y, layer), in the buffer
+/// store texel (layer * columns y + y) * columns x + x, four 32-bit words each. A uniform buffer
+/// holds the grid's constants.
 /// `#include <lamina/grid.glsl>` queries both. Reused across frames: memory is allocated again only
-/// when the number of columns or layers changes. Move-only; see Device for threads and lifetime.
+/// when the number of columns or layers, or the store, changes. Move-only; see Device for threads
+/// and lifetime.
 class LAMINA_API VoxelGrid {
 public:
-    /// An empty grid of no size; a Voxelizer, resize() or upload() gives it one.
+    /// An empty grid of no size; a Voxelizer, resize() or upload() gives it one. A Voxelizer also
+    /// changes the store to the one its backend writes (VoxelizerCapabilities::store).
     /// Errors: OutOfMemory (for the 16 KiB uniform buffer).
-    [[nodiscard]] static Result<VoxelGrid> create(const Device& device);
+    [[nodiscard]] static Result<VoxelGrid> create(const Device& device,
+                                                  VoxelStore store = VoxelStore::Texture);
 
     VoxelGrid(VoxelGrid&&) noexcept;
     VoxelGrid& operator=(VoxelGrid&&) noexcept;
@@ -32,6 +46,8 @@ public:
     /// that write the texture themselves; a Voxelizer does it by itself.
     /// Errors: DeviceLimit, OutOfMemory; the grid is then unchanged.
     [[nodiscard]] Result<void> resize(const GridTransform& transform);
+    /// The same, and keeps the voxels in `store` from now on.
+    [[nodiscard]] Result<void> resize(const GridTransform& transform, VoxelStore store);
 
     /// Takes shape, place and voxels of `bits`. GL: no barrier needed before queries.
     /// Errors: as resize(); the grid is then unchanged.
@@ -43,16 +59,21 @@ public:
 
     /// Binds grid number `grid` of lamina/grid.glsl: the uniform buffer to binding
     /// uniformBufferBinding + grid, the texture (and no sampler object) to unit textureUnit + grid,
-    /// where the bases are LAMINA_GRID_BLOCK_BINDING and LAMINA_GRID_TEXTURE_UNIT of the shader.
-    /// Does nothing on a grid of no size. GL: these two bindings (and the sampler binding of the
-    /// unit) are what it changes; the caller restores them if need be.
+    /// where the bases are LAMINA_GRID_BLOCK_BINDING and LAMINA_GRID_TEXTURE_UNIT of the shader,
+    /// which must be compiled with LAMINA_GRID_BUFFER_STORE 1 for the buffer store, 0 for the
+    /// other. Does nothing on a grid of no size. GL: these two bindings (and the sampler binding of
+    /// the unit) are what it changes; the caller restores them if need be.
     void bind(std::uint32_t uniformBufferBinding = 0, std::uint32_t textureUnit = 0,
               std::uint32_t grid = 0) const;
 
     /// Where the voxels are; nothing for a grid of no size.
     [[nodiscard]] const GridTransform* transform() const;
-    /// GL name of the texture; 0 for a grid of no size.
+    [[nodiscard]] VoxelStore store() const;
+    /// GL name of the 2D array texture or, in the buffer store, of the texel buffer texture; 0 for
+    /// a grid of no size.
     [[nodiscard]] std::uint32_t texture() const;
+    /// GL name of the buffer; 0 in the texture store and for a grid of no size.
+    [[nodiscard]] std::uint32_t buffer() const;
     /// GL name of the uniform buffer.
     [[nodiscard]] std::uint32_t uniformBuffer() const;
     /// Bytes of GL memory held.

@@ -16,12 +16,13 @@ namespace lamina {
 enum class GridFormat : std::uint8_t {
     Automatic, ///< By the file name's extension.
     /// binvox 1 (.binvox): run lengths, `dim NX NZ NY`, y fastest, then z, then x. `translate` is
-    /// the low corner, `scale` the longest side: a voxel's edge is scale / max(dim). Cubic voxels only.
+    /// the low corner, `scale` the longest side: a voxel's edge is scale / max(dim). Cubic voxels
+    /// only.
     Binvox,
-    /// MagicaVoxel 150 (.vox): one colour; z is up there, see GridWriteOptions::up. Up to 256 voxels
-    /// a side: one model of the grid's size. Beyond: models of at most 256 a side where voxels are
-    /// set, placed by a scene graph so that the grid stands centred on the origin. Drops the world
-    /// position and the voxel size. At most about 536 million set voxels.
+    /// MagicaVoxel 150 (.vox): one colour; z is up there, see GridWriteOptions::up. Up to 256
+    /// voxels a side: one model of the grid's size. Beyond: models of at most 256 a side where
+    /// voxels are set, placed by a scene graph so that the grid stands centred on the origin. Drops
+    /// the world position and the voxel size. At most about 536 million set voxels.
     Vox,
     /// NumPy 1.0 (.npy): uint8 array of shape (NZ, NY, NX) in C order, a[k][j][i] is 0 or 1. Drops
     /// the world position and the voxel size.

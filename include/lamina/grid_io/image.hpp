@@ -13,8 +13,8 @@ namespace lamina {
 
 /// A picture: 8-bit sRGB colours with straight (not premultiplied) linear alpha.
 struct Image {
-    std::uint32_t width = 0;       ///< Pixels.
-    std::uint32_t height = 0;      ///< Pixels.
+    std::uint32_t width = 0;        ///< Pixels.
+    std::uint32_t height = 0;       ///< Pixels.
     std::vector<std::uint8_t> rgba; ///< width * height * 4 bytes, rows from the top.
 
     /// The four bytes of a pixel inside the picture; (0,0) is the upper left.

@@ -25,26 +25,30 @@ struct PreviewDesc {
     double fieldOfView = 0.45; ///< Vertical, radians, in (0, pi).
     /// Empty border around the grid's box, a share of the picture's width and height, in [0, 0.9].
     double margin = 0.06;
-    std::uint32_t samplesPerPixel = 16; ///< Primary rays, 1 to 4096; time and smoothness grow with it.
-    std::uint32_t threads = 0;          ///< Including the caller's; 0: one a processor.
+    std::uint32_t samplesPerPixel =
+        16;                    ///< Primary rays, 1 to 4096; time and smoothness grow with it.
+    std::uint32_t threads = 0; ///< Including the caller's; 0: one a processor.
 
-    glm::vec3 lowColor{0.07f, 0.33f, 0.50f};  ///< Voxels at the grid's foot.
-    glm::vec3 highColor{0.98f, 0.68f, 0.36f}; ///< Voxels at its top.
+    glm::vec3 lowColor{0.12f, 0.31f, 0.55f};  ///< Voxels at the grid's foot.
+    glm::vec3 highColor{0.98f, 0.70f, 0.47f}; ///< Voxels at its top.
     glm::vec3 backgroundTop{0.87f, 0.90f, 0.94f};
     glm::vec3 backgroundBottom{0.97f, 0.97f, 0.96f};
-    bool transparentBackground = false; ///< Nothing but voxels and their shadow, for any page colour.
-    bool ground = true;                 ///< A shadow on the ground under the lowest set voxel.
-    bool edges = true;                  ///< Bevels and joints where a voxel is a few pixels wide.
+    bool transparentBackground =
+        false;          ///< Nothing but voxels and their shadow, for any page colour.
+    bool ground = true; ///< A shadow on the ground under the lowest set voxel.
+    bool edges = true;  ///< Bevels and joints where a voxel is a few pixels wide.
 };
 
-/// A shaded, anti-aliased picture of the voxels themselves: blocks in perspective under sun and sky,
-/// the grid's box just inside the picture. An empty grid shows the background alone.
-/// grid: from GridTransform::box() with linear slices, any axis; voxels need not be cubes.
-/// Pictures of equal arguments are equal, whatever the number of threads.
-/// Memory: at most the grid's own again. Cost: about 10 million samples a second and core... see README
+/// A shaded, anti-aliased picture of the voxels themselves: blocks in perspective under sun and
+/// sky, the grid's box just inside the picture. An empty grid shows the background alone. grid:
+/// from GridTransform::box() with linear slices, any axis; voxels need not be cubes. progress:
+/// called on the caller's thread. Equal arguments give equal pictures, whatever the threads.
+/// Memory: 20 bytes a pixel, and 512 bytes for each 16 x 16 x 16 voxels of which any is set.
+/// Cost: about 0.3 microseconds a sample and thread, little more on large grids than on small ones.
 /// Errors: InvalidArgument (a value out of its range), Unsupported (another grid), OutOfMemory.
-/// Threads: starts `threads` - 1 of its own and waits for them; progress is called on the caller's.
-[[nodiscard]] LAMINA_API Result<Image> renderPreview(const BitGrid& grid, const PreviewDesc& desc = {},
+/// Threads: may be called from several; starts `threads` - 1 of its own and waits for them.
+[[nodiscard]] LAMINA_API Result<Image> renderPreview(const BitGrid& grid,
+                                                     const PreviewDesc& desc = {},
                                                      const ProgressCallback& progress = {});
 
 } // namespace lamina

@@ -17,6 +17,18 @@ namespace lamina {
 
 enum class IndexType : std::uint8_t { None, UInt16, UInt32 };
 
+/// One more attribute of a MeshView's vertices; needed by backends that record it.
+struct VertexStream {
+    std::uint32_t buffer = 0;      ///< GL buffer name; 0: the vertices have no such attribute.
+    std::uint64_t offsetBytes = 0; ///< Of vertex 0; a multiple of 4.
+    std::uint32_t strideBytes = 0; ///< From one vertex to the next; a multiple of 4, above 0.
+};
+
+enum class VertexColorFormat : std::uint8_t {
+    Float, ///< Four floats, RGBA in [0,1].
+    UNorm8 ///< Four bytes, RGBA.
+};
+
 /// Triangles in the host's own GL buffers (GL_TRIANGLES). Borrowed for the call; nothing is copied.
 struct MeshView {
     std::uint32_t vertexBuffer = 0;        ///< GL buffer name.
@@ -31,6 +43,10 @@ struct MeshView {
 
     glm::mat4 model{1.0f};        ///< Affine, model to world.
     std::uint32_t materialId = 0; ///< Index into the material table.
+
+    VertexStream normals; ///< Three floats, model space, any length; none: the faces' own.
+    VertexStream colors;  ///< None: white.
+    VertexColorFormat colorFormat = VertexColorFormat::Float;
 };
 
 /// What the draw callback of a DrawSource is given.
@@ -44,11 +60,18 @@ struct DrawContext {
 struct DrawSource {
     /// GLSL 4.50 that defines `LaminaVertex laminaVertex()` (lamina/vertex_interface.glsl) and
     /// declares what it needs: inputs, uniforms, buffers. It must not declare main(), nor use
-    /// uniform buffer bindings 0 and 1, nor names that begin with `lamina` or `Lamina` otherwise.
+    /// uniform buffer bindings 0 to 2 and image unit 0, nor names that begin with `lamina` or
+    /// `Lamina` otherwise.
     std::string vertexShader;
+    /// At least the number of triangles that the callback draws; 0: unknown. A compute backend
+    /// keeps them in a buffer of 36 bytes each: what exceeds a number given here is not voxelized,
+    /// and without one the backend waits for the GPU to see whether its buffer was large enough,
+    /// and if not runs the callback again with a larger one. Raster backends do not use it. For
+    /// compute backends no transform feedback of the host may be active.
+    std::uint64_t maxTriangles = 0;
     /// Binds the host's vertex array and resources and issues draws of GL_TRIANGLES,
     /// GL_TRIANGLE_STRIP or GL_TRIANGLE_FAN. It runs with Lamina's program and framebuffer bound
-    /// and must leave both; vertex array, uniform buffers 0 and 1 and raster state are put back
+    /// and must leave both; vertex array, uniform buffers 0 to 2 and raster state are put back
     /// after voxelize(); what else it binds (textures, storage buffers, other uniform buffers)
     /// stays as it leaves it.
     std::function<void(const DrawContext&)> draw;
@@ -56,7 +79,8 @@ struct DrawSource {
 
 using GeometrySource = std::variant<MeshView, DrawSource>;
 
-/// A host mesh copied to GL buffers, for callers that have none yet. Move-only.
+/// A host mesh (positions, and normals and colours where it has them) copied to GL buffers, for
+/// callers that have none yet. Move-only.
 class LAMINA_API MeshBuffers {
 public:
     /// Errors: InvalidMesh (see validate()), OutOfMemory.

@@ -23,12 +23,25 @@ enum class Coverage : std::uint8_t {
     /// For each column whose centre the triangle covers, every slice that the part of the triangle
     /// inside the column spans. No holes along the depth.
     Filled,
+    /// Every voxel whose closed cube the triangle touches: nothing is missed. A face on the
+    /// boundary
+    /// of two voxels sets both.
+    Conservative,
+    /// Thin and gap-free [Schwarz & Seidel 2010]: every voxel whose crosshair, the segments through
+    /// its centre along the axes and what they span, the triangle touches. A 6-connected path
+    /// across
+    /// the surface meets a set voxel. Subset of Conservative.
+    Separating6,
+    /// Every voxel whose centre lies inside: an odd number of triangles crosses the column's centre
+    /// line beyond it. For closed meshes of any orientation; see downloadSolidReport().
+    Solid,
 };
 
 /// How voxels are made.
 enum class Backend : std::uint8_t {
     Automatic, ///< Picks by what is asked and what the device can do.
     Slicemap,  ///< Bits by logic op, one pass of the geometry per 128 slices ([ED06] 2.1-2.3).
+    Overlap,   ///< Exact triangle/voxel overlap by compute shaders; orthographic, linear slices.
 };
 
 [[nodiscard]] LAMINA_API std::string_view name(Coverage coverage); ///< "sampled"
@@ -41,11 +54,20 @@ struct VoxelizerDesc {
 
 /// What a voxelizer can do on its device.
 struct VoxelizerCapabilities {
-    std::uint32_t maxColumns = 0;    ///< In x and in y.
-    std::uint32_t maxSlices = 0;     ///< Linear distribution.
-    std::uint32_t slicesPerPass = 0; ///< Slices made by one pass of the geometry.
-    bool perspective = false;        ///< Perspective grids.
-    bool drawSources = false;        ///< Geometry by DrawSource.
+    std::uint32_t maxColumns = 0;           ///< In x and in y.
+    std::uint32_t maxSlices = 0;            ///< Linear distribution.
+    std::uint32_t slicesPerPass = 0;        ///< Slices made by one pass of the geometry.
+    bool perspective = false;               ///< Perspective grids.
+    bool anyDistribution = false;           ///< Logarithmic and custom slices.
+    bool drawSources = false;               ///< Geometry by DrawSource.
+    VoxelStore store = VoxelStore::Texture; ///< What voxelize() makes of the grid.
+};
+
+/// How far Coverage::Solid could tell inside from outside.
+struct SolidReport {
+    /// Columns whose centre line an odd number of triangles crosses. There the mesh is not closed,
+    /// and the column is filled up to the nearest crossing without a partner. 0 for closed meshes.
+    std::uint64_t oddColumns = 0;
 };
 
 /// What one voxelize() call did; known without waiting for the GPU.
@@ -88,6 +110,10 @@ public:
     [[nodiscard]] virtual Result<VoxelizeStats> voxelize(std::span<const GeometrySource> sources,
                                                          const GridTransform& transform,
                                                          VoxelGrid& out) = 0;
+
+    /// What the last voxelize() with Coverage::Solid found. Waits for the GPU.
+    /// Errors: InvalidArgument (another coverage, or nothing voxelized yet).
+    [[nodiscard]] virtual Result<SolidReport> downloadSolidReport() const;
 
 protected:
     Voxelizer() = default;

@@ -444,6 +444,11 @@ OddGlState::OddGlState(const GladGLContext& gl)
         gl.BindImageTexture(i, image, 1, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
 
     GLuint name = 0;
+    gl.CreateTransformFeedbacks(1, &name);
+    gl.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, name);
+    mFeedbacks.push_back(name);
+    for (GLuint i = 0; i < 4; ++i)
+        gl.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, i, buffer(), 128, 512);
     const GLuint color = texture(GL_TEXTURE_2D);
     gl.TextureStorage2D(color, 1, GL_RGBA8, 16, 16);
     for (const GLenum target : {GL_DRAW_FRAMEBUFFER, GL_READ_FRAMEBUFFER}) {
@@ -507,6 +512,7 @@ OddGlState::~OddGlState() {
     gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl.UseProgram(0);
+    gl.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, 0);
     gl.BindProgramPipeline(0);
     gl.BindVertexArray(0);
     gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -522,6 +528,7 @@ OddGlState::~OddGlState() {
     gl.DeleteFramebuffers(count(mFramebuffers), mFramebuffers.data());
     gl.DeleteRenderbuffers(count(mRenderbuffers), mRenderbuffers.data());
     gl.DeleteVertexArrays(count(mVertexArrays), mVertexArrays.data());
+    gl.DeleteTransformFeedbacks(count(mFeedbacks), mFeedbacks.data());
     gl.DeleteProgramPipelines(count(mPipelines), mPipelines.data());
     for (const GLuint program : mPrograms)
         gl.DeleteProgram(program);

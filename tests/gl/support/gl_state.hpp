@@ -35,7 +35,7 @@ private:
 
     const GladGLContext& mGl;
     std::vector<GLuint> mBuffers, mTextures, mFramebuffers, mVertexArrays, mSamplers, mPrograms,
-        mRenderbuffers, mPipelines;
+        mRenderbuffers, mPipelines, mFeedbacks;
 };
 
 } // namespace lamina::test

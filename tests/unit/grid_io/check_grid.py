@@ -66,10 +66,12 @@ def read_vdb(path, low, edge, shape):
     grid = grids[0]
     expect_close("centre of voxel 0", grid.transform.indexToWorld((0, 0, 0)), np.array(low) + 0.5 * np.array(edge))
     expect_close("voxel size", grid.transform.voxelSize(), edge)
-    array = np.zeros(shape[::-1], dtype=np.float32)
+    array = np.zeros(shape, dtype=np.float32)
     grid.copyToArray(array)
-    if grid.activeVoxelCount() != np.count_nonzero(array) or not np.all((array == 0) | (array == 1)):
-        fail("expected active voxels of value 1 inside the grid and nothing else")
+    if not np.all((array == 0) | (array == 1)):
+        fail("expected values 0 and 1")
+    if grid.activeVoxelCount() != np.count_nonzero(array):
+        fail(f"expected {np.count_nonzero(array)} active voxels, found {grid.activeVoxelCount()}")
     return array.transpose(2, 1, 0).astype(np.uint8)
 
 

@@ -17,7 +17,9 @@ std::string exact(double value) {
     return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-std::string quoted(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
+std::string quoted(const std::filesystem::path& path) {
+    return "'" + path.string() + "'";
+}
 
 struct Outcome {
     int code = -1;
@@ -43,7 +45,9 @@ struct Case {
     glm::dvec3 edge;
 };
 
-void PrintTo(const Case& value, std::ostream* stream) { *stream << value.name; }
+void PrintTo(const Case& value, std::ostream* stream) {
+    *stream << value.name;
+}
 
 const Case kNonCubic{"NonCubicVoxels", {37, 70, 131}, {0.25, 0.125, 0.3}};
 const Case kCubic{"CubicVoxels", {37, 70, 131}, {0.1, 0.1, 0.1}};
@@ -53,15 +57,14 @@ const Case kPast256{"Past256", {300, 20, 270}, {0.5, 0.5, 0.5}};
 const Case kLong{"Long", {9, 600, 257}, {0.5, 0.5, 0.5}};
 
 /// Every format, all that its grids may be, checked in full by a reader that is not ours.
-class ForeignReader
-    : public testing::TestWithParam<std::tuple<GridFormat, Case, Axis>> {
+class ForeignReader : public testing::TestWithParam<std::tuple<GridFormat, Case, Axis>> {
 protected:
     Outcome check(const std::filesystem::path& file, const BitGrid& grid, const glm::uvec3& counts,
                   const char* up = "y") {
         const Box3& box = grid.transform().boxBounds();
         test::writeText(mFolder / "occupancy", test::occupancy(grid, counts));
-        std::string command = quoted(LAMINA_TEST_PYTHON) + " " + quoted(LAMINA_TEST_GRID_CHECKER) + " " +
-                              quoted(file) + " " + quoted(mFolder / "occupancy");
+        std::string command = quoted(LAMINA_TEST_PYTHON) + " " + quoted(LAMINA_TEST_GRID_CHECKER) +
+                              " " + quoted(file) + " " + quoted(mFolder / "occupancy");
         for (int i = 0; i < 3; ++i)
             command += " " + std::to_string(counts[i]);
         for (int i = 0; i < 3; ++i)
@@ -80,7 +83,8 @@ TEST_P(ForeignReader, FindsEveryVoxelInItsPlace) {
         GTEST_SKIP() << "built without OpenVDB";
     if (std::string(LAMINA_TEST_PYTHON).empty())
         GTEST_SKIP() << "no python3 found when configured";
-    const BitGrid grid = test::randomGrid(test::boxOf(shape.counts, shape.edge), shape.counts, axis);
+    const BitGrid grid =
+        test::randomGrid(test::boxOf(shape.counts, shape.edge), shape.counts, axis);
     ASSERT_GT(grid.count(), 0u);
     const std::filesystem::path file = mFolder / ("grid." + std::string(name(format)));
     const auto written = writeGrid(file, grid);
@@ -99,8 +103,8 @@ std::string caseName(const testing::TestParamInfo<ForeignReader::ParamType>& inf
 const auto kAxes = testing::Values(Axis::X, Axis::Y, Axis::Z);
 
 INSTANTIATE_TEST_SUITE_P(AnyVoxels, ForeignReader,
-                         testing::Combine(testing::Values(GridFormat::Npy, GridFormat::Vti, GridFormat::Vdb,
-                                                          GridFormat::Vox),
+                         testing::Combine(testing::Values(GridFormat::Npy, GridFormat::Vti,
+                                                          GridFormat::Vdb, GridFormat::Vox),
                                           testing::Values(kNonCubic, kSingle, kWordEdges), kAxes),
                          caseName);
 INSTANTIATE_TEST_SUITE_P(CubicVoxels, ForeignReader,
@@ -118,7 +122,8 @@ TEST_P(ForeignVoxReader, FindsTheChosenAxisUp) {
     const auto& [format, shape, up] = GetParam();
     if (std::string(LAMINA_TEST_PYTHON).empty())
         GTEST_SKIP() << "no python3 found when configured";
-    const BitGrid grid = test::randomGrid(test::boxOf(shape.counts, shape.edge), shape.counts, Axis::Z);
+    const BitGrid grid =
+        test::randomGrid(test::boxOf(shape.counts, shape.edge), shape.counts, Axis::Z);
     GridWriteOptions options;
     options.up = up;
     ASSERT_TRUE(writeGrid(mFolder / "grid.vox", grid, options));

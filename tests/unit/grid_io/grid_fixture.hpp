@@ -20,7 +20,8 @@ namespace lamina::test {
 class TemporaryFolder {
 public:
     TemporaryFolder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "lamina-test-XXXXXX").string();
+        std::string pattern =
+            (std::filesystem::temp_directory_path() / "lamina-test-XXXXXX").string();
         if (mkdtemp(pattern.data()) == nullptr)
             ADD_FAILURE() << "no temporary folder";
         mPath = pattern;
@@ -35,7 +36,8 @@ public:
     const std::filesystem::path& path() const { return mPath; }
     std::filesystem::path operator/(const std::string& name) const { return mPath / name; }
     std::size_t fileCount() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(mPath), {}));
+        return static_cast<std::size_t>(
+            std::distance(std::filesystem::directory_iterator(mPath), {}));
     }
 
 private:
@@ -55,7 +57,8 @@ inline BitGrid emptyGrid(const Box3& box, const glm::uvec3& counts, Axis axis) {
     return *BitGrid::create(*GridTransform::box(box, counts, axis));
 }
 
-/// Sets world voxel (i,j,k) of a box grid by its centre: the plainest way, through no index of ours.
+/// Sets world voxel (i,j,k) of a box grid by its centre: the plainest way, through no index of
+/// ours.
 inline void setWorld(BitGrid& grid, const glm::uvec3& counts, const glm::uvec3& voxel) {
     const Box3& box = grid.transform().boxBounds();
     const glm::dvec3 center = box.min + (glm::dvec3(voxel) + 0.5) * box.size() / glm::dvec3(counts);
@@ -85,8 +88,8 @@ inline std::string occupancy(const BitGrid& grid, const glm::uvec3& counts) {
     for (std::uint32_t k = 0; k < counts.z; ++k)
         for (std::uint32_t j = 0; j < counts.y; ++j)
             for (std::uint32_t i = 0; i < counts.x; ++i)
-                bytes += static_cast<char>(grid.at(box.min + (glm::dvec3(i, j, k) + 0.5) * box.size() /
-                                                                 glm::dvec3(counts)));
+                bytes += static_cast<char>(grid.at(box.min + (glm::dvec3(i, j, k) + 0.5) *
+                                                                 box.size() / glm::dvec3(counts)));
     return bytes;
 }
 

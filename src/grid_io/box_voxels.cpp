@@ -1,0 +1,124 @@
+#include "grid_io/box_voxels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstring>
+
+namespace lamina::detail {
+
+Result<BoxVoxels> BoxVoxels::create(const BitGrid& grid) {
+    const GridTransform& transform = grid.transform();
+    if (!transform.boxAxis() || transform.distribution().kind() != SliceDistribution::Kind::Linear)
+        return Error{ErrorCode::Unsupported,
+                     "voxels: expected a grid over a world box with slices of equal depth, found " +
+                         transform.describe() +
+                         (transform.boxAxis() ? " with other slices" : " camera grid") +
+                         "; voxelize into GridTransform::box() with linear slices"};
+    return BoxVoxels(grid);
+}
+
+BoxVoxels::BoxVoxels(const BitGrid& grid)
+    : mGrid(&grid) {
+    const glm::uvec3 axes = boxGridAxes(*grid.transform().boxAxis());
+    for (int i = 0; i < 3; ++i)
+        mSize[static_cast<int>(axes[i])] = grid.size()[i];
+    mSliceAxis = static_cast<int>(axes.z);
+    mStride[axes.x] = 4;
+    mStride[axes.y] = std::size_t{4} * grid.size().x;
+    mStride[axes.z] = 0;
+    mGroupStride = mStride[axes.y] * grid.size().y;
+}
+
+void BoxVoxels::load(AxisOrder order, const glm::uvec3& low, const glm::uvec3& extent,
+                     BitBlock& block) const {
+    assert(low.x % 32 == 0);
+    block.extent = extent;
+    block.rowWords = (extent.x + 31) / 32;
+    block.words.assign(static_cast<std::size_t>(block.rowWords) * extent.y * extent.z, 0);
+    const std::uint32_t* source = mGrid->words().data();
+    const auto wordOffset = [&](std::uint32_t slice) {
+        return (slice >> 7u) * mGroupStride + ((slice >> 5u) & 3u);
+    };
+
+    if (mSliceAxis == order.fast) {
+        const std::uint32_t tail = extent.x % 32;
+        const std::uint32_t tailMask = tail == 0 ? ~0u : (1u << tail) - 1u;
+        std::uint32_t* target = block.words.data();
+        for (std::uint32_t s = 0; s < extent.z; ++s)
+            for (std::uint32_t m = 0; m < extent.y; ++m, target += block.rowWords) {
+                const std::uint32_t* column = source + (low.y + m) * mStride[order.middle] +
+                                              (low.z + s) * mStride[order.slow];
+                for (std::uint32_t w = 0; w < block.rowWords; ++w)
+                    target[w] = column[wordOffset(low.x + 32 * w)];
+                target[block.rowWords - 1] &= tailMask;
+            }
+        return;
+    }
+
+    // A column's bits run along the middle or the slowest axis: 32 columns that are neighbours
+    // along the fastest axis are transposed, 32 slices at a time.
+    const bool slicesAreSlow = mSliceAxis == order.slow;
+    const std::uint32_t firstSlice = slicesAreSlow ? low.z : low.y;
+    const std::uint32_t endSlice = firstSlice + (slicesAreSlow ? extent.z : extent.y);
+    const int otherAxis = slicesAreSlow ? order.middle : order.slow;
+    const std::uint32_t otherLow = slicesAreSlow ? low.y : low.z;
+    const std::uint32_t otherCount = slicesAreSlow ? extent.y : extent.z;
+    const std::size_t rowWords = block.rowWords;
+    const std::size_t sliceStride = slicesAreSlow ? rowWords * extent.y : rowWords;
+    const std::size_t otherStride = slicesAreSlow ? rowWords : rowWords * extent.y;
+    const std::size_t fastStride = mStride[order.fast];
+    for (std::uint32_t other = 0; other < otherCount; ++other)
+        for (std::uint32_t w = 0; w < block.rowWords; ++w) {
+            const std::uint32_t columns = std::min(32u, extent.x - 32 * w);
+            const std::uint32_t* first =
+                source + (otherLow + other) * mStride[otherAxis] + (low.x + 32 * w) * fastStride;
+            for (std::uint32_t base = firstSlice & ~31u; base < endSlice; base += 32) {
+                std::uint32_t bits[32] = {};
+                std::uint32_t any = 0;
+                for (std::uint32_t c = 0; c < columns; ++c)
+                    any |= bits[c] = first[c * fastStride + wordOffset(base)];
+                if (any == 0)
+                    continue;
+                transpose32(bits);
+                const std::uint32_t begin = std::max(base, firstSlice);
+                const std::uint32_t end = std::min(base + 32, endSlice);
+                for (std::uint32_t slice = begin; slice < end; ++slice)
+                    block.words[(slice - firstSlice) * sliceStride + other * otherStride + w] =
+                        bits[slice - base];
+            }
+        }
+}
+
+void transpose32(std::uint32_t words[32]) {
+    // Swaps the off-diagonal quarters of ever smaller squares.
+    std::uint32_t mask = 0x0000ffffu;
+    for (std::uint32_t half = 16; half != 0; half >>= 1, mask ^= mask << half)
+        for (std::uint32_t row = 0; row < 32; row = ((row | half) + 1) & ~half) {
+            const std::uint32_t swapped = ((words[row] >> half) ^ words[row | half]) & mask;
+            words[row] ^= swapped << half;
+            words[row | half] ^= swapped;
+        }
+}
+
+namespace {
+
+constexpr std::array<std::array<std::uint8_t, 8>, 256> kExpanded = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> table{};
+    for (unsigned value = 0; value < 256; ++value)
+        for (unsigned bit = 0; bit < 8; ++bit)
+            table[value][bit] = (value >> bit) & 1u;
+    return table;
+}();
+
+} // namespace
+
+void expandBits(std::span<const std::uint32_t> words, std::size_t count, std::uint8_t* bytes) {
+    for (std::size_t done = 0; done < count; done += 8) {
+        const auto& expanded = kExpanded[(words[done / 32] >> (done % 32)) & 0xffu];
+        std::memcpy(bytes + done, expanded.data(), std::min<std::size_t>(8, count - done));
+    }
+}
+
+} // namespace lamina::detail

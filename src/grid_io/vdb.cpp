@@ -1,0 +1,172 @@
+#include "grid_io/formats.hpp"
+
+#if defined(LAMINA_HAS_OPENVDB)
+
+// OpenVDB's templates keep a type's name in a static member that our instantiation and the
+// library's must share; under hidden visibility they half share it and openvdb::initialize()
+// crashes.
+#pragma GCC visibility push(default)
+#include <openvdb/openvdb.h>
+#pragma GCC visibility pop
+
+#include <algorithm>
+#include <ostream>
+#include <streambuf>
+
+namespace lamina::detail {
+namespace {
+
+/// A stream into an AtomicFile. OpenVDB goes back to fill in offsets, so positions must work.
+class AtomicFileBuffer : public std::streambuf {
+public:
+    explicit AtomicFileBuffer(AtomicFile& file)
+        : mFile(file) {}
+
+    const Result<void>& result() const { return mResult; }
+
+protected:
+    std::streamsize xsputn(const char* text, std::streamsize count) override {
+        const auto bytes = std::as_bytes(std::span(text, static_cast<std::size_t>(count)));
+        const std::uint64_t inside =
+            std::min<std::uint64_t>(bytes.size(), mFile.size() - mPosition);
+        if (inside > 0)
+            keep(mFile.overwrite(mPosition, bytes.first(inside)));
+        if (inside < bytes.size())
+            keep(mFile.write(bytes.subspan(inside)));
+        mPosition += bytes.size();
+        return mResult ? count : 0;
+    }
+    int_type overflow(int_type c) override {
+        const char text = traits_type::to_char_type(c);
+        return xsputn(&text, 1) == 1 ? c : traits_type::eof();
+    }
+    pos_type seekoff(off_type offset, std::ios_base::seekdir from,
+                     std::ios_base::openmode) override {
+        const auto base = from == std::ios_base::beg   ? off_type{0}
+                          : from == std::ios_base::cur ? static_cast<off_type>(mPosition)
+                                                       : static_cast<off_type>(mFile.size());
+        return seekpos(base + offset, std::ios_base::out);
+    }
+    pos_type seekpos(pos_type position, std::ios_base::openmode) override {
+        if (position < 0 || static_cast<std::uint64_t>(position) > mFile.size())
+            return pos_type(off_type(-1));
+        mPosition = static_cast<std::uint64_t>(position);
+        return position;
+    }
+
+private:
+    void keep(Result<void> result) {
+        if (mResult)
+            mResult = std::move(result);
+    }
+
+    AtomicFile& mFile;
+    std::uint64_t mPosition = 0;
+    Result<void> mResult;
+};
+
+/// openvdb::io::File opens the file itself and overlooks a full disk; this archive writes the same
+/// bytes into a stream of ours.
+class StreamArchive : public openvdb::io::Archive {
+public:
+    void writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids) const {
+        openvdb::io::Archive::write(stream, grids, /*seekable=*/true, openvdb::MetaMap());
+    }
+};
+
+using Tree = openvdb::FloatTree;
+using Leaf = Tree::LeafNodeType;
+/// Not known to the tree, which nobody else changes while it is in use.
+using Accessor = openvdb::tree::ValueAccessor<Tree, false>;
+
+/// Adds the 8 x 8 x 8 voxels whose rows stand in `block` from (middle, slow), byte `byte` of a row.
+void addLeaf(Accessor& accessor, const BitBlock& block, const openvdb::Coord& low,
+             std::uint32_t byte, std::uint32_t middle, std::uint32_t slow) {
+    const std::uint32_t rows = std::min(8u, block.extent.y - middle);
+    const std::uint32_t layers = std::min(8u, block.extent.z - slow);
+    Leaf::NodeMaskType mask;
+    int count = 0;
+    for (std::uint32_t z = 0; z < layers; ++z)
+        for (std::uint32_t y = 0; y < rows; ++y) {
+            const std::uint32_t bits =
+                block.row(middle + y, slow + z)[byte / 4] >> (8 * (byte % 4)) & 0xffu;
+            for (std::uint32_t x = 0; x < 8; ++x)
+                if (bits >> x & 1u) {
+                    mask.setOn((x << 6) | (y << 3) | z);
+                    ++count;
+                }
+        }
+    if (count == 0)
+        return;
+    if (count == 512) { // A tile: solid insides would need a gigabyte of leaves.
+        accessor.addTile(1, low, 1.0f, true);
+        return;
+    }
+    Leaf* leaf = accessor.touchLeaf(low);
+    for (auto voxel = mask.beginOn(); voxel; ++voxel)
+        leaf->setValueOn(voxel.pos(), 1.0f);
+}
+
+openvdb::FloatGrid::Ptr densityGrid(const BoxVoxels& voxels, const GridWriteOptions& options) {
+    auto grid = openvdb::FloatGrid::create(0.0f);
+    grid->setName("density");
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    const glm::dvec3 edge = voxels.voxelSize();
+    const glm::dvec3 center = voxels.bounds().min + 0.5 * edge;
+    openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
+    matrix.preScale(openvdb::Vec3d(edge.x, edge.y, edge.z));
+    matrix.postTranslate(openvdb::Vec3d(center.x, center.y, center.z));
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+
+    Accessor accessor(grid->tree());
+    const glm::uvec3 size = voxels.size();
+    BitBlock block;
+    for (std::uint32_t base = 0; base < size.z; base += kSlabSlices) {
+        voxels.load({0, 1, 2}, {0, 0, base}, {size.x, size.y, std::min(kSlabSlices, size.z - base)},
+                    block);
+        for (std::uint32_t z = 0; z < block.extent.z; z += 8)
+            for (std::uint32_t y = 0; y < size.y; y += 8)
+                for (std::uint32_t x = 0; x < size.x; x += 8)
+                    addLeaf(accessor, block, openvdb::Coord(int(x), int(y), int(base + z)), x / 8,
+                            y, z);
+        // Writing the tree takes about as long as building it.
+        report(options, 0.5 * (base + block.extent.z) / size.z);
+    }
+    return grid;
+}
+
+} // namespace
+
+Result<void> writeVdb(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options) {
+    AtomicFileBuffer buffer(file);
+    try {
+        openvdb::initialize();
+        std::ostream stream(&buffer);
+        stream.exceptions(std::ios::badbit | std::ios::failbit);
+        StreamArchive().writeTo(stream, {densityGrid(voxels, options)});
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        if (buffer.result())
+            return Error{ErrorCode::InputOutput,
+                         std::string("write vdb: expected OpenVDB to write the grid, found: ") +
+                             error.what()};
+    }
+    report(options, 1.0);
+    return buffer.result();
+}
+
+} // namespace lamina::detail
+
+#else
+
+namespace lamina::detail {
+
+Result<void> writeVdb(AtomicFile&, const BoxVoxels&, const GridWriteOptions&) {
+    return Error{ErrorCode::Unsupported,
+                 "write vdb: expected a lamina built with OpenVDB, found one without"};
+}
+
+} // namespace lamina::detail
+
+#endif

@@ -1,0 +1,237 @@
+#include "grid_io/formats.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <initializer_list>
+#include <limits>
+#include <utility>
+
+namespace lamina::detail {
+namespace {
+
+constexpr std::uint32_t kModelSide = 256;
+/// Index into the palette of every voxel, until grids carry colours. Index 0 means empty.
+constexpr std::uint8_t kColor = 1;
+
+/// How the file's axes lie in the world, see GridWriteOptions::up.
+struct Mapping {
+    AxisOrder order;      ///< World axes that become the file's x, y, z.
+    bool mirrorY = false; ///< The file's y runs against its world axis.
+};
+
+Mapping mapping(Axis up) {
+    switch (up) {
+    case Axis::X:
+        return {{1, 2, 0}};
+    case Axis::Y:
+        return {{0, 2, 1}, true};
+    case Axis::Z:
+        break;
+    }
+    return {{0, 1, 2}};
+}
+
+/// The bytes of a chunk or dictionary, little-endian.
+class Bytes {
+public:
+    Bytes& number(std::int64_t value) {
+        const auto bits = static_cast<std::uint32_t>(value);
+        for (int shift = 0; shift < 32; shift += 8)
+            mText += static_cast<char>(bits >> shift & 0xffu);
+        return *this;
+    }
+    Bytes& numbers(std::initializer_list<std::int64_t> values) {
+        for (const std::int64_t value : values)
+            number(value);
+        return *this;
+    }
+    Bytes& string(const std::string& text) {
+        number(static_cast<std::int64_t>(text.size()));
+        mText += text;
+        return *this;
+    }
+    Bytes& dictionary(std::initializer_list<std::pair<std::string, std::string>> entries) {
+        number(static_cast<std::int64_t>(entries.size()));
+        for (const auto& [key, value] : entries)
+            string(key).string(value);
+        return *this;
+    }
+    Bytes& raw(const std::string& text) {
+        mText += text;
+        return *this;
+    }
+    const std::string& text() const { return mText; }
+
+private:
+    std::string mText;
+};
+
+Result<void> writeChunk(AtomicFile& file, const std::string& id, const Bytes& content) {
+    Bytes header;
+    header.raw(id).numbers({static_cast<std::int64_t>(content.text().size()), 0});
+    return file.write(header.text() + content.text());
+}
+
+/// A part of the grid in file axes.
+struct Model {
+    glm::uvec3 low;
+    glm::uvec3 size;
+};
+
+/// Loads the voxels of `model`: block rows run along the file's x.
+void loadModel(const BoxVoxels& voxels, const Mapping& map, const Model& model, std::uint32_t sizeY,
+               BitBlock& block) {
+    glm::uvec3 low = model.low;
+    if (map.mirrorY)
+        low.y = sizeY - model.low.y - model.size.y;
+    voxels.load(map.order, low, model.size, block);
+}
+
+Result<void> writeModel(AtomicFile& file, const BitBlock& block, std::uint32_t count,
+                        bool mirrorY) {
+    const glm::uvec3 size = block.extent;
+    if (auto written = writeChunk(file, "SIZE", Bytes().numbers({size.x, size.y, size.z}));
+        !written)
+        return written;
+    Bytes header;
+    header.raw("XYZI").numbers({std::int64_t{4} * count + 4, 0, count});
+    if (auto written = file.write(header.text()); !written)
+        return written;
+    std::vector<std::uint8_t> entries;
+    for (std::uint32_t z = 0; z < size.z; ++z) {
+        entries.clear();
+        for (std::uint32_t y = 0; y < size.y; ++y) {
+            const auto row = block.row(mirrorY ? size.y - 1 - y : y, z);
+            for (std::uint32_t w = 0; w < block.rowWords; ++w)
+                for (std::uint32_t bits = row[w]; bits != 0; bits &= bits - 1) {
+                    const std::uint32_t x =
+                        32 * w + static_cast<std::uint32_t>(std::countr_zero(bits));
+                    entries.insert(entries.end(),
+                                   {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                                    static_cast<std::uint8_t>(z), kColor});
+                }
+        }
+        if (auto written = file.write(std::as_bytes(std::span(entries))); !written)
+            return written;
+    }
+    return {};
+}
+
+/// Places the models so that the grid is centred on the origin in x and y and stands on z = 0.
+/// A model's translation names its centre voxel, size / 2.
+Result<void> writeSceneGraph(AtomicFile& file, const std::vector<Model>& models,
+                             const glm::uvec3& size) {
+    Bytes root;
+    root.number(0).dictionary({}).numbers({1, -1, -1, 1}).dictionary({});
+    if (auto written = writeChunk(file, "nTRN", root); !written)
+        return written;
+    Bytes group;
+    group.number(1).dictionary({}).number(static_cast<std::int64_t>(models.size()));
+    for (std::size_t i = 0; i < models.size(); ++i)
+        group.number(static_cast<std::int64_t>(2 + 2 * i));
+    if (auto written = writeChunk(file, "nGRP", group); !written)
+        return written;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+        const Model& model = models[i];
+        const glm::ivec3 center =
+            glm::ivec3(model.low + model.size / 2u) - glm::ivec3(size.x / 2, size.y / 2, 0);
+        const auto node = static_cast<std::int64_t>(2 + 2 * i);
+        Bytes transform;
+        transform.number(node).dictionary({}).numbers({node + 1, -1, -1, 1});
+        transform.dictionary({{"_t", std::to_string(center.x) + " " + std::to_string(center.y) +
+                                         " " + std::to_string(center.z)}});
+        if (auto written = writeChunk(file, "nTRN", transform); !written)
+            return written;
+        Bytes shape;
+        shape.number(node + 1)
+            .dictionary({})
+            .numbers({1, static_cast<std::int64_t>(i)})
+            .dictionary({});
+        if (auto written = writeChunk(file, "nSHP", shape); !written)
+            return written;
+    }
+    return {};
+}
+
+/// Index 1 is the colour of the voxels; the rest is a ramp of greys, ready for painting.
+Bytes palette() {
+    std::string colors{'\xe8', '\x8d', '\x52', '\xff'};
+    for (int i = 1; i < 256; ++i)
+        for (int channel = 0; channel < 4; ++channel)
+            colors += static_cast<char>(channel < 3 ? 255 - i : 255);
+    return Bytes().raw(colors);
+}
+
+Result<void> checkLimits(const BoxVoxels& voxels, const glm::uvec3& size) {
+    // The size of all chunks together is one signed 32-bit number.
+    constexpr std::uint64_t kMostVoxels = std::numeric_limits<std::int32_t>::max() / 4 - (1u << 20);
+    if (const std::uint64_t count = voxels.count(); count > kMostVoxels)
+        return Error{ErrorCode::Unsupported,
+                     "write vox: expected at most " + std::to_string(kMostVoxels) +
+                         " set voxels, found " + std::to_string(count) + "; choose .vdb or .vti"};
+    const std::uint64_t models = std::uint64_t{(size.x + kModelSide - 1) / kModelSide} *
+                                 ((size.y + kModelSide - 1) / kModelSide) *
+                                 ((size.z + kModelSide - 1) / kModelSide);
+    constexpr std::uint64_t kMostModels = 4096;
+    if (models > kMostModels)
+        return Error{ErrorCode::Unsupported, "write vox: expected at most " +
+                                                 std::to_string(kMostModels) +
+                                                 " models of 256 voxels a side, found " +
+                                                 std::to_string(models) + "; choose .vdb or .vti"};
+    return {};
+}
+
+} // namespace
+
+Result<void> writeVox(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options) {
+    const Mapping map = mapping(options.up);
+    const glm::uvec3 size{voxels.size()[map.order.fast], voxels.size()[map.order.middle],
+                          voxels.size()[map.order.slow]};
+    if (auto checked = checkLimits(voxels, size); !checked)
+        return checked;
+    Bytes start;
+    start.raw("VOX ").number(150).raw("MAIN").numbers({0, 0});
+    if (auto written = file.write(start.text()); !written)
+        return written;
+    const std::uint64_t childrenBegin = file.size();
+
+    std::vector<Model> models;
+    BitBlock block;
+    const bool single = std::max({size.x, size.y, size.z}) <= kModelSide;
+    for (std::uint32_t z = 0; z < size.z; z += kModelSide) {
+        for (std::uint32_t y = 0; y < size.y; y += kModelSide)
+            for (std::uint32_t x = 0; x < size.x; x += kModelSide) {
+                const glm::uvec3 low(x, y, z);
+                const Model model{low, glm::min(size - low, glm::uvec3(kModelSide))};
+                loadModel(voxels, map, model, size.y, block);
+                std::uint32_t count = 0;
+                for (const std::uint32_t word : block.words)
+                    count += static_cast<std::uint32_t>(std::popcount(word));
+                // A file needs a model, even an empty one.
+                if (count == 0 && !single)
+                    continue;
+                models.push_back(model);
+                if (auto written = writeModel(file, block, count, map.mirrorY); !written)
+                    return written;
+            }
+        report(options, static_cast<double>(std::min(z + kModelSide, size.z)) / size.z);
+    }
+    if (models.empty()) {
+        models.push_back({glm::uvec3(0), glm::uvec3(1)});
+        block.extent = glm::uvec3(1);
+        block.rowWords = 1;
+        block.words.assign(1, 0);
+        if (auto written = writeModel(file, block, 0, false); !written)
+            return written;
+    }
+    if (!single)
+        if (auto written = writeSceneGraph(file, models, size); !written)
+            return written;
+    if (auto written = writeChunk(file, "RGBA", palette()); !written)
+        return written;
+    Bytes childrenBytes;
+    childrenBytes.number(static_cast<std::int64_t>(file.size() - childrenBegin));
+    return file.overwrite(childrenBegin - 4, std::as_bytes(std::span(childrenBytes.text())));
+}
+
+} // namespace lamina::detail

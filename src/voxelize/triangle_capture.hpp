@@ -1,0 +1,59 @@
+#pragma once
+
+#include "gl/device_state.hpp"
+#include "gl/state_guard.hpp"
+
+#include <lamina/voxelize/geometry_source.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace lamina {
+
+/// Separate triangles in a GL buffer: three positions of three floats each.
+struct CapturedTriangles {
+    GLuint buffer = 0;
+    std::uint64_t capacity = 0; ///< Triangles; those that were not drawn have NaN positions.
+};
+
+/// Runs vertex stages and keeps the triangles they make, by transform feedback. No queries: the
+/// host may have its own active. Buffers are kept, one a slot, and reused.
+class TriangleCapture {
+public:
+    explicit TriangleCapture(std::shared_ptr<gl::DeviceState> device);
+
+    /// The program for capture(): of the host's vertex stage, or of MeshView sources.
+    /// Errors: ShaderError.
+    [[nodiscard]] Result<GLuint> program(const DrawSource& source) const;
+    [[nodiscard]] Result<GLuint> meshProgram() const;
+
+    /// A paused transform feedback of the host would not survive another one: Mesa (22.3) keeps the
+    /// primitive mode in the context.
+    /// Errors: InvalidArgument while the host's is active.
+    [[nodiscard]] Result<void> checkHost() const;
+
+    /// Captures a source's triangles. The state is put back as Voxelizer promises.
+    /// Waits for the GPU if a DrawSource does not say how many triangles it draws.
+    /// Errors: OutOfMemory.
+    [[nodiscard]] Result<CapturedTriangles> capture(std::size_t slot, const DrawSource& source,
+                                                    GLuint program);
+    [[nodiscard]] Result<CapturedTriangles> capture(std::size_t slot, const MeshView& view,
+                                                    GLuint program);
+
+private:
+    using Draw = std::function<void(gl::RasterStateGuard&)>;
+
+    [[nodiscard]] Result<void> reserve(std::size_t slot, std::uint64_t triangles);
+    void run(std::size_t slot, GLuint program, const Draw& draw);
+    [[nodiscard]] bool isFull(std::size_t slot) const;
+    [[nodiscard]] std::uint64_t capacity(std::size_t slot) const;
+
+    std::shared_ptr<gl::DeviceState> mDevice;
+    gl::TransformFeedback mFeedback;
+    gl::Framebuffer mFramebuffer;
+    gl::VertexArray mVertexArray;
+    std::vector<gl::Buffer> mBuffers;
+};
+
+} // namespace lamina

@@ -1,0 +1,61 @@
+// Uses something of every installed component, so that a static one must bring all it links.
+#include <lamina/core/version.hpp>
+#include <lamina/grid/bit_grid.hpp>
+#include <lamina/headless/context.hpp>
+#ifdef HAS_MESH_IO
+#include <lamina/mesh_io/mesh_file.hpp>
+#endif
+#ifdef HAS_GRID_IO
+#include <lamina/grid_io/grid_file.hpp>
+#endif
+
+#include <cstdio>
+
+namespace {
+
+bool expect(bool condition, const char* what) {
+    if (!condition)
+        std::printf("expected: %s\n", what);
+    return condition;
+}
+
+bool contextIsMade() {
+    const auto context = lamina::headless::Context::create();
+    return expect(context.hasValue(), "a headless context");
+}
+
+bool meshIsRead() {
+#ifdef HAS_MESH_IO
+    const auto mesh = lamina::readMesh("no_such_file.obj");
+    return expect(!mesh && mesh.error().code == lamina::ErrorCode::NotFound,
+                  "NotFound for a missing mesh");
+#else
+    return true;
+#endif
+}
+
+bool gridIsWritten() {
+#ifdef HAS_GRID_IO
+    const auto transform =
+        lamina::GridTransform::box({glm::dvec3(0.0), glm::dvec3(4.0)}, glm::uvec3(4));
+    if (!expect(transform.hasValue(), "a box grid"))
+        return false;
+    auto grid = lamina::BitGrid::create(*transform);
+    if (!expect(grid.hasValue(), "a host grid"))
+        return false;
+    grid->set({1, 2, 3});
+    for (const char* file : {"component_program.npy", "component_program.vdb"}) {
+        const bool possible = lamina::canWrite(*lamina::gridFormat(file));
+        if (!expect(lamina::writeGrid(file, *grid).hasValue() == possible, file))
+            return false;
+    }
+#endif
+    return true;
+}
+
+} // namespace
+
+int main() {
+    static_assert(LAMINA_VERSION_MAJOR >= 0);
+    return contextIsMade() && meshIsRead() && gridIsWritten() ? 0 : 1;
+}

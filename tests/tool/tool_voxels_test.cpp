@@ -1,0 +1,299 @@
+#include "support/mesh_files.hpp"
+#include "support/npy_array.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/tool_process.hpp"
+
+#include <lamina/mesh_io/mesh_file.hpp>
+
+#include <reference/filled.hpp>
+#include <reference/sampled.hpp>
+#include <reference/shapes.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <functional>
+
+namespace lamina::test {
+namespace {
+
+constexpr std::array kAxisNames{"x", "y", "z"};
+
+/// Runs the tool, expects success and returns the voxels of `out`.
+NpyArray voxelsOf(std::vector<std::string> arguments, const std::string& out) {
+    arguments.insert(arguments.end(), {"-o", out});
+    const ToolResult result = runTool(arguments);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    return result.exitCode == 0 ? readNpyArray(out) : NpyArray{};
+}
+
+/// The voxels of a reference grid, looked up by the world position of each voxel's centre.
+bool isSetAt(const BitGrid& grid, const glm::uvec3& voxel) {
+    const Box3& box = grid.transform().boxBounds();
+    const glm::uvec3 axes = boxGridAxes(*grid.transform().boxAxis());
+    glm::dvec3 counts;
+    for (int i = 0; i < 3; ++i)
+        counts[axes[i]] = grid.size()[i];
+    return grid.at(box.min + (glm::dvec3(voxel) + 0.5) / counts * box.size());
+}
+
+/// Voxels for which `isRight(voxel, value in the array)` is false.
+std::uint64_t wrongVoxels(const NpyArray& array,
+                          const std::function<bool(const glm::uvec3&, bool)>& isRight) {
+    std::uint64_t wrong = 0;
+    for (std::uint32_t k = 0; k < array.counts.z; ++k)
+        for (std::uint32_t j = 0; j < array.counts.y; ++j)
+            for (std::uint32_t i = 0; i < array.counts.x; ++i)
+                wrong += !isRight({i, j, k}, array.at({i, j, k}) != 0);
+    return wrong;
+}
+
+std::vector<std::string> boxArguments(const Box3& box, const glm::uvec3& counts) {
+    std::vector<std::string> arguments{"--bounds"};
+    for (const glm::dvec3& corner : {box.min, box.max})
+        for (int axis = 0; axis < 3; ++axis)
+            arguments.push_back(nlohmann::json(corner[axis]).dump());
+    arguments.push_back("--grid");
+    for (int axis = 0; axis < 3; ++axis)
+        arguments.push_back(std::to_string(counts[axis]));
+    return arguments;
+}
+
+// Faces across the axis of projection are set, faces along it are edge-on and set nothing.
+TEST(ToolVoxels, CubeHasTheTwoFacesAcrossTheAxis) {
+    const TemporaryFolder folder;
+    writePly(folder / "cube.ply", reference::makeBox({2, -3, 5}, {3, -2, 6}));
+    for (int axis = 0; axis < 3; ++axis) {
+        const NpyArray array = voxelsOf(
+            {folder / "cube.ply", "-r", "8", "--axis", kAxisNames[axis]}, folder / "cube.npy");
+        EXPECT_EQ(array.counts, glm::uvec3(8));
+        EXPECT_EQ(wrongVoxels(array,
+                              [&](const glm::uvec3& voxel, bool isSet) {
+                                  return isSet == (voxel[axis] == 0 || voxel[axis] == 7);
+                              }),
+                  0u)
+            << "axis " << kAxisNames[axis];
+    }
+}
+
+TEST(ToolVoxels, CountsRoundUpFromTheLowCorner) {
+    const TemporaryFolder folder;
+    writePly(folder / "box.ply", reference::makeBox({1, 1, 1}, {5, 3.2f, 2}));
+    const NpyArray array =
+        voxelsOf({folder / "box.ply", "--voxel-size", "0.5", "--axis", "y"}, folder / "box.npy");
+    EXPECT_EQ(array.counts, glm::uvec3(8, 5, 2));
+    EXPECT_EQ(
+        wrongVoxels(array, [](const glm::uvec3& voxel,
+                              bool isSet) { return isSet == (voxel.y == 0 || voxel.y == 4); }),
+        0u);
+}
+
+// 0.7f / 7 is a little less than 0.1f: the faces at the high ends must neither be lost nor get a
+// layer of voxels of their own.
+TEST(ToolVoxels, SidesThatAreMultiplesButForRoundingKeepTheirFaces) {
+    const TemporaryFolder folder;
+    writePly(folder / "bar.ply", reference::makeBox({0.3f, 0.1f, -0.3f}, {1.0f, 0.3f, -0.1f}));
+    for (int axis = 0; axis < 3; ++axis) {
+        const NpyArray array = voxelsOf({folder / "bar.ply", "-r", "7", "--axis", kAxisNames[axis]},
+                                        folder / "bar.npy");
+        ASSERT_EQ(array.counts, glm::uvec3(7, 2, 2));
+        EXPECT_EQ(wrongVoxels(array,
+                              [&](const glm::uvec3& voxel, bool isSet) {
+                                  return isSet == (voxel[axis] == 0 ||
+                                                   voxel[axis] == array.counts[axis] - 1);
+                              }),
+                  0u)
+            << "axis " << kAxisNames[axis];
+    }
+}
+
+TEST(ToolVoxels, FlatMeshIsOneVoxelThick) {
+    const TemporaryFolder folder;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::vec3 normal(0);
+        normal[axis] = 1;
+        writeObj(folder / "flat.obj", reference::makePlane({1, 2, 3}, normal, 2));
+        const NpyArray array = voxelsOf({folder / "flat.obj", "-r", "10"}, folder / "flat.npy");
+        glm::uvec3 expected(10);
+        expected[axis] = 1;
+        EXPECT_EQ(array.counts, expected);
+        EXPECT_EQ(array.setCount(), 100u);
+    }
+}
+
+// Vertices on sixteenths of a voxel: no rounding in the mesh. Sampled must agree everywhere. Filled
+// must have all that the reference has; what a triangle reaches only at a corner of its column
+// within 1e-4 of a voxel is left to the device's float arithmetic.
+class ToolReference : public testing::TestWithParam<std::tuple<int, bool>> {};
+
+TEST_P(ToolReference, EveryVoxelOfBoundsAndGridAgrees) {
+    const auto [axis, isFilled] = GetParam();
+    const Box3 box{{-3, -2, 0.5}, {3, 2, 2.5}};
+    const glm::uvec3 counts(48, 64, 40);
+    const GridTransform transform = *GridTransform::box(box, counts, static_cast<Axis>(axis));
+    const TriangleMesh mesh =
+        reference::snapped(reference::merged(reference::makeTorus({0, 0, 1.5f}, 1.6f, 0.7f, 40, 24),
+                                             reference::makeTriangleSoup(
+                                                 {{-2, -1.9, 0.6}, {2, 1.9, 2.4}}, 60, 1.0f, 3)),
+                           transform);
+    const TemporaryFolder folder;
+    writePly(folder / "mesh.ply", mesh);
+
+    std::vector<std::string> arguments = boxArguments(box, counts);
+    arguments.insert(arguments.begin(), folder / "mesh.ply");
+    for (const char* word :
+         {"--axis", kAxisNames[axis], "--coverage", isFilled ? "filled" : "sampled"})
+        arguments.emplace_back(word);
+    const NpyArray array = voxelsOf(arguments, folder / "mesh.npy");
+    ASSERT_EQ(array.counts, counts);
+
+    reference::Options grown;
+    grown.grow = 1e-4;
+    const BitGrid least =
+        isFilled ? *reference::filled(mesh, transform) : *reference::sampled(mesh, transform);
+    const BitGrid most = isFilled ? *reference::filled(mesh, transform, grown) : least;
+    EXPECT_GT(least.count(), 2000u);
+    EXPECT_LE(array.setCount(), least.count() + least.count() / 100);
+    EXPECT_EQ(wrongVoxels(array,
+                          [&](const glm::uvec3& voxel, bool isSet) {
+                              return isSet ? isSetAt(most, voxel) : !isSetAt(least, voxel);
+                          }),
+              0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(AxesAndCoverages, ToolReference,
+                         testing::Combine(testing::Values(0, 1, 2), testing::Bool()));
+
+/// Filled by -r: everything that a grid shrunk by 1e-4 of a voxel must have, nothing that one grown
+/// by 1e-4 has not. The margin is the rounding of float arithmetic that the coverage allows.
+void expectFilledWithin(const TriangleMesh& mesh, const std::string& file, const std::string& stats,
+                        const NpyArray& array) {
+    const auto json = nlohmann::json::parse(readBytes(stats), nullptr, false);
+    ASSERT_FALSE(json.is_discarded()) << stats;
+    const auto& grid = json["grid"];
+    Box3 box;
+    for (int axis = 0; axis < 3; ++axis) {
+        box.min[axis] = grid["bounds"]["min"][axis];
+        box.max[axis] = grid["bounds"]["max"][axis];
+        ASSERT_EQ(array.counts[axis], grid["size"][axis].get<std::uint32_t>());
+    }
+    EXPECT_EQ(json["voxels"]["set"].get<std::uint64_t>(), array.setCount());
+    const auto axis = static_cast<Axis>(grid["axis"].get<std::string>()[0] - 'x');
+    const GridTransform transform = *GridTransform::box(box, array.counts, axis);
+    reference::Options grown;
+    grown.grow = 1e-4;
+    reference::Options shrunk;
+    shrunk.grow = -1e-4;
+    const BitGrid most = *reference::filled(mesh, transform, grown);
+    const BitGrid least = *reference::filled(mesh, transform, shrunk);
+    EXPECT_EQ(wrongVoxels(array,
+                          [&](const glm::uvec3& voxel, bool isSet) {
+                              return isSet ? isSetAt(most, voxel) : !isSetAt(least, voxel);
+                          }),
+              0u)
+        << file;
+}
+
+TEST(ToolVoxels, FilledByResolutionStaysWithinTheReferences) {
+    const TriangleMesh mesh = reference::makeTorusKnot({0.3f, -1.7f, 12}, 1.3f, 0.4f, 2, 3, 90, 16);
+    const TemporaryFolder folder;
+    writePly(folder / "knot.ply", mesh);
+    for (const char* axis : kAxisNames) {
+        const NpyArray array = voxelsOf(
+            {folder / "knot.ply", "-r", "70", "--axis", axis, "--stats", folder / "knot.json"},
+            folder / "knot.npy");
+        expectFilledWithin(mesh, "torus knot", folder / "knot.json", array);
+    }
+}
+
+TEST(ToolVoxels, AllMeshFormatsGiveTheSameVoxels) {
+    const TriangleMesh mesh = reference::makeIcosphere({0.1f, 0.2f, 0.3f}, 0.77f, 3);
+    const TemporaryFolder folder;
+    writePly(folder / "mesh.ply", mesh);
+    writeObj(folder / "mesh.obj", mesh);
+    writeStl(folder / "mesh.stl", mesh);
+    writeOff(folder / "mesh.off", mesh);
+    (void)voxelsOf({folder / "mesh.ply", "-r", "40"}, folder / "ply.npy");
+    const std::string expected = readBytes(folder / "ply.npy");
+    for (const std::string format : {"obj", "stl", "off"}) {
+        (void)voxelsOf({folder / ("mesh." + format), "-r", "40"}, folder / (format + ".npy"));
+        EXPECT_EQ(readBytes(folder / (format + ".npy")), expected) << format;
+    }
+}
+
+// More than one group of 128 slices, several passes.
+TEST(ToolVoxels, BothContextsGiveTheSameBytes) {
+    const TemporaryFolder folder;
+    writePly(folder / "knot.ply", reference::makeTorusKnot({0, 0, 0}, 1.3f, 0.4f, 2, 3, 200, 32));
+    for (const std::string context : {"egl", "osmesa"}) {
+        const NpyArray array =
+            voxelsOf({folder / "knot.ply", "-r", "300", "--axis", "x", "--context", context},
+                     folder / (context + ".npy"));
+        EXPECT_EQ(std::max({array.counts.x, array.counts.y, array.counts.z}), 300u);
+        EXPECT_GT(array.setCount(), 100000u);
+    }
+    EXPECT_EQ(readBytes(folder / "egl.npy"), readBytes(folder / "osmesa.npy"));
+}
+
+TEST(ToolVoxels, DefaultsAreResolution256FilledAndTheBestAxis) {
+    const TemporaryFolder folder;
+    writePly(folder / "slab.ply", reference::makeBox({0, 0, 0}, {1, 4, 4}));
+    (void)voxelsOf({folder / "slab.ply"}, folder / "default.npy");
+    const NpyArray array =
+        voxelsOf({folder / "slab.ply", "--resolution", "256", "--coverage", "filled", "--axis", "x",
+                  "--backend", "slicemap", "--context", "auto"},
+                 folder / "same.npy");
+    EXPECT_EQ(array.counts, glm::uvec3(64, 256, 256));
+    EXPECT_EQ(array.setCount(), 2u * 256 * 256);
+    EXPECT_EQ(readBytes(folder / "default.npy"), readBytes(folder / "same.npy"));
+}
+
+TEST(ToolVoxels, GridMayCutTheMeshOrMissIt) {
+    const TemporaryFolder folder;
+    writePly(folder / "plane.ply", reference::makePlane({0, 0, 0}, {0, 0, 1}, 8));
+    const NpyArray part = voxelsOf({folder / "plane.ply", "--bounds", "-1", "-.5", "-1e0", "1",
+                                    "+.5", "1", "--grid", "4", "2", "4"},
+                                   folder / "part.npy");
+    EXPECT_EQ(wrongVoxels(part, [](const glm::uvec3& voxel,
+                                   bool isSet) { return isSet == (voxel.z == 2); }),
+              0u);
+    const ToolResult missed = runTool({folder / "plane.ply", "--bounds", "0", "0", "1", "1", "1",
+                                       "2", "--grid", "4", "4", "4", "-o", folder / "missed.npy"});
+    EXPECT_EQ(missed.exitCode, 0);
+    EXPECT_NE(missed.err.find("warning: no voxel is set"), std::string::npos) << missed.err;
+    EXPECT_EQ(readNpyArray(folder / "missed.npy").setCount(), 0u);
+}
+
+TEST(ToolVoxels, SixteenThousandVoxelsAlongASide) {
+    const TemporaryFolder folder;
+    TriangleMesh strip = reference::makePlane({0.5f, 0.5f, 0}, {0, 0, 1}, 1);
+    for (glm::vec3& position : strip.positions)
+        position.y *= 1.0f / 16384.0f;
+    writePly(folder / "strip.ply", strip);
+    const NpyArray array = voxelsOf({folder / "strip.ply", "-r", "16384"}, folder / "strip.npy");
+    EXPECT_EQ(array.counts, glm::uvec3(16384, 1, 1));
+    EXPECT_EQ(array.setCount(), 16384u);
+}
+
+/// Real meshes of the folder LAMINA_MESH_DIR, where that is set.
+TEST(ToolVoxels, RealMeshesStayWithinTheReferences) {
+    const char* const directory = std::getenv("LAMINA_MESH_DIR");
+    if (directory == nullptr)
+        GTEST_SKIP() << "LAMINA_MESH_DIR is not set";
+    const TemporaryFolder folder;
+    for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+        if (entry.path().extension() != ".ply" && entry.path().extension() != ".obj")
+            continue;
+        const NpyArray array =
+            voxelsOf({entry.path().string(), "-r", "100", "--stats", folder / "mesh.json"},
+                     folder / "mesh.npy");
+        const auto mesh = readMesh(entry.path());
+        ASSERT_TRUE(mesh.hasValue()) << entry.path();
+        expectFilledWithin(*mesh, entry.path().string(), folder / "mesh.json", array);
+    }
+}
+
+} // namespace
+} // namespace lamina::test

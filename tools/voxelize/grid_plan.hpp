@@ -1,0 +1,54 @@
+#pragma once
+
+#include <lamina/core/box.hpp>
+#include <lamina/core/triangle_mesh.hpp>
+#include <lamina/grid/grid_transform.hpp>
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <optional>
+
+namespace lamina::tool {
+
+/// The grid as asked for: by resolution, by voxel size, or as a box with counts (`bounds` and
+/// `counts` together). Exactly one of the three.
+struct GridRequest {
+    std::optional<std::uint32_t> resolution; ///< Voxels along the longest side, >= 1.
+    std::optional<double> voxelSize;         ///< Edge, world units, > 0.
+    std::optional<Box3> bounds;              ///< World units, min < max.
+    std::optional<glm::uvec3> counts;        ///< Along world x, y, z, >= 1.
+    std::optional<Axis> axis;                ///< Of projection; nothing: chosen from the mesh.
+};
+
+/// Where the voxels will be.
+struct GridPlan {
+    Box3 bounds;               ///< World units.
+    glm::uvec3 counts{1};      ///< Along world x, y, z.
+    glm::dvec3 voxelSize{1.0}; ///< Edges, world units.
+    Axis axis = Axis::Z;
+    bool isAxisChosen = false; ///< Not given by the user.
+    /// Columns that all triangles cover together, seen along x, y, z: what the choice compares.
+    glm::dvec3 coveredColumns{0.0};
+
+    /// Bits of the grid as Lamina stores it, in bytes.
+    [[nodiscard]] double bytes() const;
+};
+
+/// The grid for `mesh`, which has triangles.
+///
+/// Resolution and voxel size give cubes from the low corner of the mesh's box, counts rounded up. A
+/// side that is a whole number of voxels but for the rounding of float coordinates gets no extra
+/// one: there the voxels grow by that rounding, so that the whole mesh stays inside. A flat side is
+/// one voxel thick. Throws Failure: BadMesh (all vertices in one point), Unsupported (too many
+/// voxels to count).
+[[nodiscard]] GridPlan planGrid(const GridRequest& request, const TriangleMesh& mesh);
+
+/// Throws Failure (Unsupported) if the grid, once on the device and once on the host, takes more
+/// than `limitBytes`.
+void checkMemory(const GridPlan& plan, double limitBytes);
+
+/// Bytes of memory of this machine.
+[[nodiscard]] double physicalMemory();
+
+} // namespace lamina::tool

@@ -1,0 +1,97 @@
+#include "help.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <utility>
+
+namespace lamina::tool {
+namespace {
+
+constexpr std::size_t kNameColumns = 32;
+constexpr std::size_t kTextColumns = 68;
+
+/// `text` with line breaks between words, no line longer than kTextColumns.
+std::string wrapped(std::string text) {
+    std::size_t lineStart = 0;
+    while (text.size() - lineStart > kTextColumns) {
+        const std::size_t space = text.rfind(' ', lineStart + kTextColumns);
+        if (space == std::string::npos || space <= lineStart)
+            break;
+        text[space] = '\n';
+        lineStart = space + 1;
+    }
+    return text;
+}
+
+} // namespace
+
+const char* const kHelpDescription =
+    R"(Turns a triangle mesh into voxels, on a GPU or by Mesa's software renderer, without a display.
+Reads .obj .ply .stl .off; writes .npy .binvox .vox .vti .vdb, and pictures (.png).
+)";
+
+const char* const kHelpFooter = R"(Coverage:
+  sampled  in each column of voxels, the one where the surface meets the column's centre line;
+           leaves holes where the surface is steep
+  filled   as sampled, and every voxel that the triangle spans in that column: no holes along the
+           columns
+  Both look along one axis (--axis). A triangle sets voxels only in columns whose centre it covers:
+  one that is edge-on to the axis sets none, and a steep surface may show gaps between columns. The
+  union of three axes is not made. The default axis is the one along which the triangles cover the
+  most columns.
+
+Grid:
+  Give one of -r, --voxel-size, or --bounds with --grid. The first two make cubes from the low
+  corner of the mesh's box; counts are rounded up. A side that is a whole number of voxels gets no
+  extra one: where float coordinates miss it by their rounding, voxels grow by that much. A flat side
+  is one voxel thick. --stats tells the bounds and the voxel size in use.
+  Lengths are in the mesh's units. Voxel (i, j, k) has its low corner at
+  bounds_min + (i, j, k) * voxel_size; in .npy, a uint8 array of shape (NZ, NY, NX), it is a[k][j][i].
+
+Files:
+  All are checked before work starts, and appear whole or not at all. Progress and a summary are
+  shown on standard error if that is a terminal.
+
+Exit codes:
+  0        done
+  1        reading, writing, memory or OpenGL failed
+  2        the command line is wrong
+  3        the mesh file cannot be read or holds nothing to voxelize
+  4        not served by this version, or over a limit of device, memory or format
+  128 + N  ended by signal N; no partial file is left
+
+Examples:
+  lamina-voxelize bunny.obj -o bunny.vdb
+  lamina-voxelize bunny.obj -r 512 -o bunny.npy -o bunny.vox --preview bunny.png
+  lamina-voxelize part.stl --voxel-size 0.5 --axis z --up z -o part.vti --stats -
+  lamina-voxelize room.ply --bounds -4 0 -4 4 3 4 --grid 256 96 256 -o room.binvox
+  lamina-voxelize scan.ply --info
+)";
+
+HelpFormatter::HelpFormatter() {
+    column_width(kNameColumns);
+}
+
+std::string HelpFormatter::make_group(std::string group, bool isPositional,
+                                      std::vector<const CLI::Option*> options) const {
+    const std::string text =
+        Formatter::make_group(std::move(group), isPositional, std::move(options));
+    const std::size_t begin = text.find_first_not_of('\n');
+    const std::size_t end = text.find_last_not_of('\n') + 1;
+    // One blank line after each group; the caller adds it to all but the positionals'.
+    return text.substr(begin, end - begin) + (isPositional ? "\n\n" : "\n");
+}
+
+std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
+    return option->get_type_size() != 0 ? " " + option->get_type_name() : "";
+}
+
+std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
+    return wrapped(option->get_description());
+}
+
+std::string HelpFormatter::make_usage(const CLI::App*, std::string name) const {
+    return "Usage: " + name + " MESH [OPTIONS]\n\n";
+}
+
+} // namespace lamina::tool

@@ -1,0 +1,185 @@
+#include "report.hpp"
+
+#include "choices.hpp"
+
+#include <lamina/core/version.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <iterator>
+
+namespace lamina::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Milliseconds to a thousandth.
+double rounded(double milliseconds) {
+    return std::round(milliseconds * 1000.0) / 1000.0;
+}
+
+Json toJson(const glm::dvec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+Json toJson(const Box3& box) {
+    return {{"min", toJson(box.min)}, {"max", toJson(box.max)}};
+}
+
+Json toJson(const MeshFacts& mesh) {
+    Json json = {{"file", mesh.file.string()},
+                 {"bytes", mesh.fileBytes},
+                 {"triangles", mesh.triangles},
+                 {"vertices", mesh.vertices},
+                 {"bounds", toJson(mesh.bounds)}};
+    if (!mesh.report)
+        return json;
+    const MeshReport& report = *mesh.report;
+    json["distinct_positions"] = report.distinctPositions;
+    json["degenerate_triangles"] = report.degenerateTriangles;
+    json["components"] = report.components;
+    json["open_edges"] = report.openEdges;
+    json["open_loops"] = report.openLoops;
+    json["non_manifold_edges"] = report.nonManifoldEdges;
+    json["flipped_edges"] = report.flippedEdges;
+    json["watertight"] = report.watertight();
+    json["signed_volume"] = report.signedVolume;
+    return json;
+}
+
+Json toJson(const GridPlan& grid) {
+    return {{"size", {grid.counts.x, grid.counts.y, grid.counts.z}},
+            {"voxel_size", toJson(grid.voxelSize)},
+            {"bounds", toJson(grid.bounds)},
+            {"axis", wordOf(kAxes, grid.axis)},
+            {"axis_chosen_by", grid.isAxisChosen ? "most columns covered" : "command line"},
+            {"columns_covered", toJson(grid.coveredColumns)}};
+}
+
+Json toJson(const RendererFacts& renderer) {
+    return {{"context", wordOf(kContexts, renderer.context.api)},
+            {"kind", renderer.context.kind},
+            {"name", renderer.context.renderer},
+            {"version", renderer.context.version},
+            {"software", renderer.isSoftware},
+            {"failed_attempts", renderer.attempts}};
+}
+
+double voxelCount(const GridPlan& grid) {
+    return static_cast<double>(grid.counts.x) * grid.counts.y * grid.counts.z;
+}
+
+std::string bytesText(double bytes) {
+    constexpr const char* kUnits[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+    std::size_t unit = 0;
+    for (; bytes >= 1024.0 && unit + 1 < std::size(kUnits); ++unit)
+        bytes /= 1024.0;
+    return unit == 0 ? fmt::format("{:.0f} {}", bytes, kUnits[unit])
+                     : fmt::format("{:.1f} {}", bytes, kUnits[unit]);
+}
+
+std::string gridText(const GridPlan& grid) {
+    const glm::dvec3& h = grid.voxelSize;
+    const bool cubic = h.x == h.y && h.y == h.z;
+    return fmt::format("{} x {} x {} voxels of {}, projected along {}{}", grid.counts.x,
+                       grid.counts.y, grid.counts.z,
+                       cubic ? fmt::format("{:.6g}", h.x)
+                             : fmt::format("{:.6g} x {:.6g} x {:.6g}", h.x, h.y, h.z),
+                       wordOf(kAxes, grid.axis), grid.isAxisChosen ? " (chosen)" : "");
+}
+
+} // namespace
+
+std::string statsJson(const RunRecord& record) {
+    Json json;
+    json["tool"] = {{"name", "lamina-voxelize"}, {"version", LAMINA_VERSION_STRING}};
+    json["mesh"] = toJson(record.mesh);
+    if (record.grid)
+        json["grid"] = toJson(*record.grid);
+    if (record.voxels) {
+        const VoxelFacts& voxels = *record.voxels;
+        json["voxels"] = {{"set", voxels.set},
+                          {"share", static_cast<double>(voxels.set) / voxelCount(*record.grid)},
+                          {"coverage", voxels.coverage}};
+        json["backend"] = {{"name", voxels.backend},
+                           {"reason", voxels.reason},
+                           {"passes", voxels.passes},
+                           {"grid_bytes", voxels.deviceBytes}};
+    }
+    if (record.renderer)
+        json["renderer"] = toJson(*record.renderer);
+    Json files = Json::array();
+    for (const FileFacts& file : record.files)
+        files.push_back({{"file", file.file.string()},
+                         {"format", file.format},
+                         {"bytes", file.bytes},
+                         {"milliseconds", rounded(file.milliseconds)}});
+    json["files"] = std::move(files);
+    Json times = Json::object();
+    for (const StageTime& stage : record.stages)
+        times[stage.name] = rounded(stage.milliseconds);
+    times["total"] = rounded(record.totalMilliseconds);
+    json["milliseconds"] = std::move(times);
+    // File names need not be UTF-8.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string summary(const RunRecord& record) {
+    std::string text =
+        fmt::format("mesh      {}: {} triangles, {} vertices\n", record.mesh.file.string(),
+                    record.mesh.triangles, record.mesh.vertices);
+    if (record.grid)
+        text += fmt::format("grid      {}\n", gridText(*record.grid));
+    if (record.voxels)
+        text +=
+            fmt::format("voxels    {} set ({:.3g} %), {} coverage by {}\n", record.voxels->set,
+                        100.0 * static_cast<double>(record.voxels->set) / voxelCount(*record.grid),
+                        record.voxels->coverage, record.voxels->backend);
+    if (record.renderer)
+        text += fmt::format("renderer  {}, {}\n", record.renderer->context.kind,
+                            record.renderer->context.renderer);
+    text += "time     ";
+    for (const StageTime& stage : record.stages)
+        text += fmt::format(" {} {:.0f} ms,", stage.name, stage.milliseconds);
+    text += fmt::format(" total {:.2f} s\n", record.totalMilliseconds / 1000.0);
+    for (const FileFacts& file : record.files)
+        text += fmt::format("wrote     {} ({}, {:.0f} ms)\n", file.file.string(),
+                            bytesText(static_cast<double>(file.bytes)), file.milliseconds);
+    return text;
+}
+
+std::string meshDescription(const RunRecord& record) {
+    const MeshFacts& mesh = record.mesh;
+    const Box3& box = mesh.bounds;
+    const glm::dvec3 size = box.size();
+    std::string text =
+        fmt::format("file                {} ({})\n"
+                    "triangles           {}\n"
+                    "vertices            {}\n"
+                    "box                 ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n"
+                    "size                {:g} x {:g} x {:g}\n",
+                    mesh.file.string(), bytesText(static_cast<double>(mesh.fileBytes)),
+                    mesh.triangles, mesh.vertices, box.min.x, box.min.y, box.min.z, box.max.x,
+                    box.max.y, box.max.z, size.x, size.y, size.z);
+    if (mesh.report) {
+        const MeshReport& report = *mesh.report;
+        text += fmt::format("watertight          {}\n"
+                            "parts               {}\n"
+                            "open edges          {} in {} loops\n"
+                            "non-manifold edges  {}\n"
+                            "flipped edges       {}\n"
+                            "degenerate          {} triangles\n"
+                            "signed volume       {:g}\n",
+                            report.watertight() ? "yes" : "no", report.components, report.openEdges,
+                            report.openLoops, report.nonManifoldEdges, report.flippedEdges,
+                            report.degenerateTriangles, report.signedVolume);
+    }
+    if (record.grid)
+        text += fmt::format("grid                {}, {}\n", gridText(*record.grid),
+                            bytesText(record.grid->bytes()));
+    return text;
+}
+
+} // namespace lamina::tool

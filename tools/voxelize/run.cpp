@@ -1,0 +1,152 @@
+#include "run.hpp"
+
+#include "device_work.hpp"
+#include "failure.hpp"
+#include "file_guard.hpp"
+#include "output_plan.hpp"
+#include "report.hpp"
+#include "run_record.hpp"
+
+#include <lamina/grid_io/atomic_file.hpp>
+#include <lamina/grid_io/grid_file.hpp>
+#include <lamina/grid_io/preview.hpp>
+#include <lamina/mesh_io/mesh_file.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+namespace lamina::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t fileBytes(const fs::path& file) {
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(file, error);
+    return error ? 0 : bytes;
+}
+
+/// Whatever keeps the mesh from being read is the mesh file's fault, but for memory.
+Failure meshFailure(const Error& error) {
+    if (error.code == ErrorCode::OutOfMemory)
+        return failure(error);
+    return {ExitCode::BadMesh, error.text};
+}
+
+TriangleMesh loadMesh(const fs::path& file, StageClock& clock, RunRecord& record) {
+    TriangleMesh mesh = clock.run("load", "reading " + file.filename().string(), [&] {
+        MeshReadOptions options;
+        options.computeNormals = false;
+        options.progress = [&clock](float share) {
+            clock.progress(share);
+            return true;
+        };
+        auto read = readMesh(file, options);
+        if (!read)
+            throw meshFailure(read.error());
+        return std::move(*read);
+    });
+    record.mesh.file = file;
+    record.mesh.fileBytes = fileBytes(file);
+    record.mesh.triangles = mesh.triangles.size();
+    record.mesh.vertices = mesh.positions.size();
+    record.mesh.bounds = mesh.bounds();
+    return mesh;
+}
+
+void writeVoxels(const Request& request, const BitGrid& bits, StageClock& clock,
+                 RunRecord& record) {
+    for (const fs::path& output : request.outputs) {
+        const Stopwatch watch;
+        clock.run("write", "writing " + output.filename().string(), [&] {
+            GridWriteOptions options;
+            options.up = request.up;
+            options.progress = [&clock](double fraction) { clock.progress(fraction); };
+            const FileGuard guard;
+            require(writeGrid(output, bits, options));
+        });
+        record.files.push_back({output, std::string(name(*gridFormat(output))), fileBytes(output),
+                                watch.milliseconds()});
+    }
+}
+
+void writePreview(const Request& request, const BitGrid& bits, StageClock& clock,
+                  RunRecord& record) {
+    const PreviewRequest& preview = *request.preview;
+    const Stopwatch watch;
+    clock.run("preview", "drawing " + preview.file.filename().string(), [&] {
+        PreviewDesc desc;
+        desc.width = preview.size.x;
+        desc.height = preview.size.y;
+        desc.viewDirection = -preview.view;
+        desc.up = glm::dvec3(0.0);
+        desc.up[static_cast<int>(request.up)] = 1.0;
+        const Image image = require(
+            renderPreview(bits, desc, [&clock](double fraction) { clock.progress(fraction); }));
+        const FileGuard guard;
+        require(writePng(preview.file, image));
+    });
+    record.files.push_back({preview.file, "png", fileBytes(preview.file), watch.milliseconds()});
+}
+
+void printToStandardOutput(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+        throw Failure(ExitCode::Failed, "standard output: the text could not be written");
+}
+
+void writeStats(const StatsRequest& stats, const RunRecord& record) {
+    const std::string json = statsJson(record);
+    if (stats.toStandardOutput())
+        return printToStandardOutput(json);
+    const FileGuard guard;
+    AtomicFile file = require(AtomicFile::create(stats.file));
+    require(file.write(json));
+    require(file.commit());
+}
+
+void tell(const Request& request, const RunRecord& record) {
+    if (!request.quiet && record.voxels && record.voxels->set == 0)
+        fmt::print(
+            stderr,
+            "lamina-voxelize: warning: no voxel is set; the mesh lies outside the grid, or its "
+            "triangles are edge-on to the axis\n");
+    if (request.verbose || (!request.quiet && isatty(STDERR_FILENO) == 1))
+        fmt::print(stderr, "{}", summary(record));
+}
+
+} // namespace
+
+void run(const Request& request) {
+    StageClock clock(!request.quiet);
+    RunRecord record;
+    checkOutputs(request);
+    TriangleMesh mesh = loadMesh(request.mesh, clock, record);
+    if (request.infoOnly || request.stats)
+        record.mesh.report =
+            clock.run("inspect", "inspecting the mesh", [&] { return require(inspect(mesh)); });
+    record.grid = planGrid(request.grid, mesh);
+
+    if (!request.infoOnly) {
+        checkMemory(*record.grid, request.memoryLimitBytes);
+        const BitGrid bits = voxelizeOnDevice(request, std::move(mesh), clock, record);
+        writeVoxels(request, bits, clock, record);
+        if (request.preview)
+            writePreview(request, bits, clock, record);
+    }
+    clock.finish();
+    record.stages = clock.times();
+    record.totalMilliseconds = clock.totalMilliseconds();
+    if (request.infoOnly && !(request.stats && request.stats->toStandardOutput()))
+        printToStandardOutput(meshDescription(record));
+    else if (!request.infoOnly)
+        tell(request, record);
+    if (request.stats)
+        writeStats(*request.stats, record);
+}
+
+} // namespace lamina::tool
