@@ -20,22 +20,9 @@ void setEnabled(const GladGLContext& gl, GLenum capability, GLboolean enabled) {
 
 } // namespace
 
-EpipolarComputeGuard::EpipolarComputeGuard(gl::DeviceState& device)
+EpipolarBindingsGuard::EpipolarBindingsGuard(gl::DeviceState& device)
     : mDevice(device) {
     const GladGLContext& gl = device.gl;
-    GLboolean active = GL_FALSE;
-    GLboolean paused = GL_FALSE;
-    gl.GetBooleanv(GL_TRANSFORM_FEEDBACK_ACTIVE, &active);
-    gl.GetBooleanv(GL_TRANSFORM_FEEDBACK_PAUSED, &paused);
-    mFeedbackPaused = active && !paused;
-    if (mFeedbackPaused)
-        gl.PauseTransformFeedback();
-    gl.GetIntegerv(GL_CURRENT_PROGRAM, &mProgram);
-    for (GLuint i = 0; i < mStorage.size(); ++i) {
-        gl.GetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, i, &mStorage[i].buffer);
-        gl.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, i, &mStorage[i].offset);
-        gl.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, i, &mStorage[i].size);
-    }
     for (std::size_t i = 0; i < kImageNames.size(); ++i)
         gl.GetIntegeri_v(static_cast<GLenum>(kImageNames[i]), LAMINA_EPIPOLAR_PASS_WORD_IMAGE,
                          &mImage[i]);
@@ -48,18 +35,8 @@ EpipolarComputeGuard::EpipolarComputeGuard(gl::DeviceState& device)
     gl.ActiveTexture(static_cast<GLenum>(activeUnit));
 }
 
-EpipolarComputeGuard::~EpipolarComputeGuard() {
+EpipolarBindingsGuard::~EpipolarBindingsGuard() {
     const GladGLContext& gl = mDevice.gl;
-    // Multi-bind leaves the generic storage buffer binding alone.
-    for (GLuint i = 0; i < mStorage.size(); ++i) {
-        const auto buffer = static_cast<GLuint>(mStorage[i].buffer);
-        const auto offset = static_cast<GLintptr>(mStorage[i].offset);
-        const auto size = static_cast<GLsizeiptr>(mStorage[i].size);
-        if (buffer != 0 && size != 0)
-            gl.BindBuffersRange(GL_SHADER_STORAGE_BUFFER, i, 1, &buffer, &offset, &size);
-        else
-            gl.BindBuffersBase(GL_SHADER_STORAGE_BUFFER, i, 1, &buffer);
-    }
     gl.BindImageTexture(LAMINA_EPIPOLAR_PASS_WORD_IMAGE, static_cast<GLuint>(mImage[0]), mImage[1],
                         static_cast<GLboolean>(mImage[2]), mImage[3],
                         static_cast<GLenum>(mImage[4]), static_cast<GLenum>(mImage[5]));
@@ -71,9 +48,6 @@ EpipolarComputeGuard::~EpipolarComputeGuard() {
         gl.BindTexture(static_cast<GLenum>(kTextureTargets[i]), static_cast<GLuint>(mTextures[i]));
     gl.ActiveTexture(static_cast<GLenum>(activeUnit));
     gl.BindSampler(LAMINA_EPIPOLAR_PASS_DEPTH_UNIT, static_cast<GLuint>(mSampler));
-    gl.UseProgram(static_cast<GLuint>(mProgram));
-    if (mFeedbackPaused)
-        gl.ResumeTransformFeedback();
 }
 
 EpipolarDepthGuard::EpipolarDepthGuard(gl::DeviceState& device)

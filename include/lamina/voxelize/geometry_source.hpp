@@ -44,8 +44,8 @@ struct MeshView {
     glm::mat4 model{1.0f};        ///< Affine, model to world.
     std::uint32_t materialId = 0; ///< Index into the material table.
 
-    VertexStream normals; ///< Three floats, model space, any length; none: the faces' own.
-    VertexStream colors;  ///< None: white.
+    VertexStream normals{}; ///< Three floats, model space, any length; none: the faces' own.
+    VertexStream colors{};  ///< None: white.
     VertexColorFormat colorFormat = VertexColorFormat::Float;
 };
 
@@ -63,18 +63,18 @@ struct DrawSource {
     /// uniform buffer bindings 0 to 2 and image unit 0, nor names that begin with `lamina` or
     /// `Lamina` otherwise.
     std::string vertexShader;
-    /// At least the number of triangles that the callback draws; 0: unknown. A compute backend
-    /// keeps them in a buffer of 36 bytes each: what exceeds a number given here is not voxelized,
-    /// and without one the backend waits for the GPU to see whether its buffer was large enough,
-    /// and if not runs the callback again with a larger one. Raster backends do not use it. For
-    /// compute backends no transform feedback of the host may be active.
-    std::uint64_t maxTriangles = 0;
     /// Binds the host's vertex array and resources and issues draws of GL_TRIANGLES,
     /// GL_TRIANGLE_STRIP or GL_TRIANGLE_FAN. It runs with Lamina's program and framebuffer bound
     /// and must leave both; vertex array, uniform buffers 0 to 2 and raster state are put back
     /// after voxelize(); what else it binds (textures, storage buffers, other uniform buffers)
     /// stays as it leaves it.
     std::function<void(const DrawContext&)> draw;
+    /// At least the number of triangles that the callback draws; 0: unknown. A compute backend
+    /// keeps them in a buffer of 36 bytes each: what exceeds a number given here is not voxelized,
+    /// and without one the backend waits for the GPU to see whether its buffer was large enough,
+    /// and if not runs the callback again with a larger one. Raster backends do not use it. For
+    /// compute backends no transform feedback of the host may be active.
+    std::uint64_t maxTriangles = 0;
 };
 
 using GeometrySource = std::variant<MeshView, DrawSource>;
