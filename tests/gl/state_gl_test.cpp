@@ -180,7 +180,7 @@ TEST_P(DrawSourceStateGlTest, ActiveTransformFeedbackIsPausedAndResumed) {
         expectUnchanged("refused voxelize", [&] {
             const GeometrySource captured = DrawSource{"LaminaVertex laminaVertex() { return "
                                                        "LaminaVertex(vec3(0), vec3(0), 0u); }",
-                                                       0, [](const DrawContext&) {}};
+                                                       [](const DrawContext&) {}};
             EXPECT_THAT(voxelizer->voxelize({&captured, 1}, unitGrid(64), grid).error().text,
                         testing::HasSubstr("expected no active transform feedback"));
         });

@@ -34,7 +34,9 @@ randomGrid(const GridTransform& transform) {
 
 TEST(BitGrid, SetsCountsAndVisitsEveryVoxelOnce) {
     for (const std::uint32_t slices : {1u, 31u, 32u, 33u, 127u, 128u, 129u, 300u}) {
-        const auto [grid, voxels] = randomGrid(boxGrid({7, 5, slices}));
+        const auto made = randomGrid(boxGrid({7, 5, slices}));
+        const BitGrid& grid = made.first;
+        const auto& voxels = made.second;
         EXPECT_EQ(grid.count(), voxels.size());
         EXPECT_EQ(grid.groupCount(), (slices + 127) / 128);
         EXPECT_EQ(grid.words().size(), 7u * 5u * 4u * grid.groupCount());
@@ -105,7 +107,7 @@ TEST(BitGrid, Compares) {
 TEST(BitGrid, ReorientedGridsHoldTheSameWorldVoxels) {
     for (const Axis from : {Axis::X, Axis::Y, Axis::Z})
         for (const Axis to : {Axis::X, Axis::Y, Axis::Z}) {
-            const auto [grid, voxels] = randomGrid(boxGrid({5, 6, 7}, from));
+            const BitGrid grid = randomGrid(boxGrid({5, 6, 7}, from)).first;
             const BitGrid turned = grid.reoriented(to).value();
             EXPECT_EQ(turned.transform().boxAxis(), to);
             EXPECT_EQ(turned.count(), grid.count());

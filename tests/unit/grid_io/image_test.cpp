@@ -27,6 +27,26 @@ std::uint32_t headerNumber(const std::string& file, std::size_t at) {
     return value;
 }
 
+/// The checksum of PNG chunks, bit by bit from its definition.
+std::uint32_t checksum(const std::string& bytes) {
+    std::uint32_t rest = ~0u;
+    for (const char byte : bytes) {
+        rest ^= static_cast<unsigned char>(byte);
+        for (int bit = 0; bit < 8; ++bit)
+            rest = rest >> 1 ^ (rest & 1u ? 0xedb88320u : 0u);
+    }
+    return ~rest;
+}
+
+/// A correct PNG whose header claims another size.
+std::string withSize(std::string file, const std::string& widthAndHeight) {
+    file.replace(16, 8, widthAndHeight);
+    const std::uint32_t sum = checksum(file.substr(12, 17));
+    for (int i = 0; i < 4; ++i)
+        file[29 + static_cast<std::size_t>(i)] = static_cast<char>(sum >> (24 - 8 * i));
+    return file;
+}
+
 TEST(Png, KeepsEveryPixel) {
     TemporaryFolder folder;
     for (const bool opaque : {true, false}) {
@@ -78,8 +98,9 @@ TEST(Png, NamesWhatIsWrongWithAFile) {
     ASSERT_TRUE(writePng(folder / "good.png", noise(64, 64, true)));
     const std::string good = test::readText(folder / "good.png");
     EXPECT_EQ(readPng(folder / "none.png").error().code, ErrorCode::NotFound);
-    std::string huge = good;
-    huge.replace(16, 8, "\x00\x0f\x00\x00\x00\x0f\x00\x00"s);
+    const std::string same = withSize(good, "\x00\x00\x00\x40\x00\x00\x00\x40"s);
+    ASSERT_TRUE(same == good);
+    const std::string huge = withSize(good, "\x00\x0f\x00\x00\x00\x0f\x00\x00"s);
     for (const std::string& content :
          {""s, "text"s, good.substr(0, 20), good.substr(0, good.size() / 2), huge}) {
         test::writeText(folder / "bad.png", content);
