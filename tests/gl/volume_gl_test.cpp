@@ -1,6 +1,7 @@
 // Volumes against the double-precision reference, and what VolumeGrid and VolumeVoxelizer promise.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/test_meshes.hpp"
 
 #include <lamina/voxelize/volume_voxelizer.hpp>
 #include <lamina/voxelize/voxelizer.hpp>
@@ -13,6 +14,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lamina {
@@ -20,27 +22,8 @@ namespace {
 
 namespace ref = reference;
 
-struct NamedMesh {
-    std::string name;
-    TriangleMesh mesh;
-};
-
-/// Closed, open, thin, concave and chaotic shapes in about [-1,1]^3.
-std::vector<NamedMesh> makeShapes() {
-    const Box3 box{{-1, -1, -1}, {1, 1, 1}};
-    return {
-        {"box", ref::makeBox({-0.9f, -0.8f, -0.7f}, {0.6f, 0.7f, 0.8f})},
-        {"tetrahedron", ref::makeTetrahedron({-0.9f, -0.7f, -0.8f}, {0.9f, -0.6f, -0.5f},
-                                             {0.1f, 0.9f, -0.4f}, {0.0f, 0.1f, 0.9f})},
-        {"icosphere", ref::makeIcosphere({0, 0, 0}, 0.95f, 4)},
-        {"torus knot", ref::makeTorusKnot({0, 0, 0}, 0.55f, 0.12f, 2, 3, 256, 24)},
-        {"menger sponge", ref::makeMengerSponge({0, 0, 0}, 1.8f, 2)},
-        {"slivers", ref::makeSlivers(box, 3000, 0.8f, 0.002f, 1)},
-        {"triangle soup", ref::makeTriangleSoup(box, 2000, 0.6f, 2)},
-        {"sloped plane", ref::makePlane({0, 0, 0}, {0.3f, 0.2f, 1.0f}, 1.6f, 7)},
-        {"steep plane", ref::makePlane({0, 0, 0}, {1.0f, 0.3f, 0.001f}, 1.2f, 3)},
-    };
-}
+using test::makeShapes;
+using test::NamedMesh;
 
 GridTransform cameraGrid(Projection projection, const glm::uvec3& size,
                          const SliceDistribution& distribution = SliceDistribution::linear()) {
@@ -275,6 +258,22 @@ TEST_F(VolumeGlTest, MirroredAndSkewedModelsTurnNormalsAsTheReferenceDoes) {
                         ref::volume(mesh, transform, {.model = glm::dmat4(model)}), 1e-4,
                         "mirrored or skewed", [](std::uint32_t count) { return count > 0; });
         }
+}
+
+TEST_F(VolumeGlTest, RealMeshesAgreeWithTheReference) {
+    const auto files = {"bunny.ply", "armadillo.ply", "sponza.ply", "tree.ply"};
+    for (const NamedMesh& real : test::readRealMeshes({files.begin(), files.end()})) {
+        const GridTransform transform =
+            GridTransform::box(real.mesh.bounds(), glm::uvec3(256), Axis::X).value();
+        TriangleMesh mesh = real.mesh;
+        mesh.normals.clear();
+        const VolumeLayout layout{.normal = VolumeFormat::RGBA16F, .color = VolumeFormat::RGBA16F};
+        const VolumeData found = voxelize(mesh, transform, layout);
+        const ref::Volume expected = ref::volume(mesh, transform);
+        expectCounts(found.counts, expected, real.name);
+        expectMeans(found, expected, 2e-3, real.name,
+                    [](std::uint32_t count) { return count == 1; });
+    }
 }
 
 TEST_F(VolumeGlTest, SlabOverlapHitsNeighboursAsTheReferenceDoes) {
