@@ -51,7 +51,9 @@ vec2 unitNormal(dvec4 edge) {
 // A triangle in front of the eye: its three edges moved outwards, or, where that would make a spike,
 // the rectangle around its longest edge.
 void emitDilated(dvec2 p[3]) {
-    float radius = laminaDraw.dilation.x;
+    // Corners far outside the grid lose more to the rounding of normalized device coordinates.
+    dvec2 farthest = max(abs(p[0]), max(abs(p[1]), abs(p[2])));
+    float radius = laminaDraw.dilation.x + float(max(farthest.x, farthest.y)) * 4.8e-7;
     vec2 normals[3] = vec2[](unitNormal(triangle.edges[0]), unitNormal(triangle.edges[1]), unitNormal(triangle.edges[2]));
     vec3 miter = 1.0 + vec3(dot(normals[2], normals[0]), dot(normals[0], normals[1]), dot(normals[1], normals[2]));
     if (min(miter.x, min(miter.y, miter.z)) > 1.0e-4) {

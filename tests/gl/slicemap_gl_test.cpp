@@ -225,6 +225,20 @@ TEST_F(SlicemapGlTest, GridSizesFromOneColumnToWide) {
     }
 }
 
+TEST_F(SlicemapGlTest, TrianglesThatReachFarBeyondTheGridLoseNoColumn) {
+    const GridTransform transform =
+        GridTransform::box({{0, 0, 0}, {1, 1, 1}}, {64, 64, 64}).value();
+    for (const float reach : {1e2f, 1e4f, 1e6f}) {
+        // Steep edges that run through the grid, corners up to 64 million columns away.
+        TriangleMesh mesh;
+        mesh.positions = {
+            {-reach, -0.37f * reach, 0.1f}, {reach, 0.371f * reach, 0.7f}, {0.3f, reach, 0.4f}};
+        mesh.triangles = {{0, 1, 2}};
+        const std::string name = "reach " + std::to_string(reach);
+        expectSampled(voxelize(Coverage::Sampled, mesh, transform), mesh, transform, name);
+    }
+}
+
 TEST_F(SlicemapGlTest, FacesOnVoxelBoundariesSetOneLayer) {
     // The box fills the grid exactly; every face lies on a boundary.
     const TriangleMesh mesh = ref::makeBox({0.1f, 0.2f, 0.3f}, {0.9f, 1.0f, 1.1f});

@@ -4,6 +4,7 @@
 #include "support/tool_process.hpp"
 
 #include <lamina/mesh_io/mesh_file.hpp>
+#include <lamina/voxelize/voxelizer.hpp>
 
 #include <reference/crossings.hpp>
 #include <reference/filled.hpp>
