@@ -229,10 +229,11 @@ TEST_F(SlicemapGlTest, TrianglesThatReachFarBeyondTheGridLoseNoColumn) {
     const GridTransform transform =
         GridTransform::box({{0, 0, 0}, {1, 1, 1}}, {64, 64, 64}).value();
     for (const float reach : {1e2f, 1e4f, 1e6f}) {
-        // Steep edges that run through the grid, corners up to 64 million columns away.
+        // An edge runs through the grid, corners stand up to 64 million columns away.
         TriangleMesh mesh;
-        mesh.positions = {
-            {-reach, -0.37f * reach, 0.1f}, {reach, 0.371f * reach, 0.7f}, {0.3f, reach, 0.4f}};
+        mesh.positions = {{-reach, -0.37f * reach, 0.1f},
+                          {reach, 0.37f * reach + 0.5f, 0.7f},
+                          {0.3f, reach, 0.4f}};
         mesh.triangles = {{0, 1, 2}};
         const std::string name = "reach " + std::to_string(reach);
         expectSampled(voxelize(Coverage::Sampled, mesh, transform), mesh, transform, name);

@@ -197,7 +197,7 @@ TEST_F(ToolErrors, GridsOverALimit) {
     expectFailure({mesh, "--voxel-size", "1e-9", "-o", out}, kUnsupported, {"larger voxel size"});
     // Small in memory, but longer than any texture.
     expectFailure({mesh, "--bounds", "-1", "-1", "-1", "1", "1", "1", "--grid", "200000", "1", "1",
-                   "--axis", "z", "-o", out},
+                   "--axis", "z", "--coverage", "filled", "-o", out},
                   kUnsupported, {"200000 x 1 x 1", "limit"});
 }
 

@@ -127,7 +127,7 @@ TEST_F(ToolInterface, VerboseTellsWhenPiped) {
     const ToolResult result = runTool({mesh, "-r", "20", "-v", "-o", voxels});
     EXPECT_EQ(result.exitCode, 0);
     EXPECT_THAT(result.out, IsEmpty());
-    for (const char* text : {"320 triangles", "20 x 20 x 20 voxels", "slicemap", "wrote"})
+    for (const char* text : {"320 triangles", "20 x 20 x 20 voxels", "overlap", "wrote"})
         EXPECT_THAT(result.err, HasSubstr(text));
     EXPECT_THAT(result.err, Not(HasSubstr("\r")));
 }
@@ -156,9 +156,9 @@ TEST_F(ToolInterface, StatsOnStandardOutputAreJsonAlone) {
     EXPECT_EQ(json["grid"]["axis_chosen_by"], "command line");
     EXPECT_GT(json["voxels"]["set"], 800);
     EXPECT_EQ(json["voxels"]["share"].get<double>(), json["voxels"]["set"].get<double>() / 8000);
-    EXPECT_EQ(json["voxels"]["coverage"], "filled");
-    EXPECT_EQ(json["backend"]["name"], "slicemap");
-    EXPECT_THAT(json["backend"]["reason"].get<std::string>(), HasSubstr("filled"));
+    EXPECT_EQ(json["voxels"]["coverage"], "conservative");
+    EXPECT_EQ(json["backend"]["name"], "overlap");
+    EXPECT_THAT(json["backend"]["reason"].get<std::string>(), HasSubstr("conservative"));
     EXPECT_EQ(json["backend"]["passes"], 1);
     EXPECT_GT(json["backend"]["grid_bytes"], 20 * 20 * 16 - 1);
     EXPECT_EQ(json["renderer"]["context"], "osmesa");

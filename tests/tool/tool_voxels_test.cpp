@@ -64,13 +64,14 @@ std::vector<std::string> boxArguments(const Box3& box, const glm::uvec3& counts)
     return arguments;
 }
 
-// Faces across the axis of projection are set, faces along it are edge-on and set nothing.
+// Filled: faces across the axis of projection are set, faces along it are edge-on and set nothing.
 TEST(ToolVoxels, CubeHasTheTwoFacesAcrossTheAxis) {
     const TemporaryFolder folder;
     writePly(folder / "cube.ply", reference::makeBox({2, -3, 5}, {3, -2, 6}));
     for (int axis = 0; axis < 3; ++axis) {
         const NpyArray array = voxelsOf(
-            {folder / "cube.ply", "-r", "8", "--axis", kAxisNames[axis]}, folder / "cube.npy");
+            {folder / "cube.ply", "-r", "8", "--coverage", "filled", "--axis", kAxisNames[axis]},
+            folder / "cube.npy");
         EXPECT_EQ(array.counts, glm::uvec3(8));
         EXPECT_EQ(wrongVoxels(array,
                               [&](const glm::uvec3& voxel, bool isSet) {
@@ -85,7 +86,8 @@ TEST(ToolVoxels, CountsRoundUpFromTheLowCorner) {
     const TemporaryFolder folder;
     writePly(folder / "box.ply", reference::makeBox({1, 1, 1}, {5, 3.2f, 2}));
     const NpyArray array =
-        voxelsOf({folder / "box.ply", "--voxel-size", "0.5", "--axis", "y"}, folder / "box.npy");
+        voxelsOf({folder / "box.ply", "--voxel-size", "0.5", "--coverage", "filled", "--axis", "y"},
+                 folder / "box.npy");
     EXPECT_EQ(array.counts, glm::uvec3(8, 5, 2));
     EXPECT_EQ(
         wrongVoxels(array, [](const glm::uvec3& voxel,
@@ -99,8 +101,9 @@ TEST(ToolVoxels, SidesThatAreMultiplesButForRoundingKeepTheirFaces) {
     const TemporaryFolder folder;
     writePly(folder / "bar.ply", reference::makeBox({0.3f, 0.1f, -0.3f}, {1.0f, 0.3f, -0.1f}));
     for (int axis = 0; axis < 3; ++axis) {
-        const NpyArray array = voxelsOf({folder / "bar.ply", "-r", "7", "--axis", kAxisNames[axis]},
-                                        folder / "bar.npy");
+        const NpyArray array = voxelsOf(
+            {folder / "bar.ply", "-r", "7", "--coverage", "filled", "--axis", kAxisNames[axis]},
+            folder / "bar.npy");
         ASSERT_EQ(array.counts, glm::uvec3(7, 2, 2));
         EXPECT_EQ(wrongVoxels(array,
                               [&](const glm::uvec3& voxel, bool isSet) {
