@@ -39,9 +39,12 @@ public:
         mGl.GetQueryObjectui64v(mQuery, GL_QUERY_RESULT, &nanoseconds);
         mTotal += static_cast<double>(nanoseconds);
     }
-    /// Sum of the scopes in seconds; nothing without a working timer.
+    /// Sum of the scopes in seconds; nothing without a working timer: llvmpipe's sees no compute
+    /// work and reports some nanoseconds.
     [[nodiscard]] std::optional<double> total() const {
-        return mTotal > 0.0 ? std::optional(mTotal * 1e-9) : std::nullopt;
+        constexpr double kLeastSeconds = 1e-5;
+        const double seconds = mTotal * 1e-9;
+        return seconds > kLeastSeconds ? std::optional(seconds) : std::nullopt;
     }
 
 private:
