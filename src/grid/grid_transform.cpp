@@ -115,6 +115,9 @@ Result<GridTransform> GridTransform::box(const Box3& world, const glm::uvec3& vo
                                          const SliceDistribution& distribution) {
     if (auto checked = checkSize(voxels); !checked)
         return checked.error();
+    if (axis > Axis::Z)
+        return invalid("expected axis X, Y or Z, found value " +
+                       std::to_string(static_cast<int>(axis)));
     const glm::dvec3 extent = world.max - world.min;
     for (int i = 0; i < 3; ++i)
         if (!isFinite(world.min[i]) || !isFinite(world.max[i]) || !isFinite(extent[i]) ||

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace lamina {
@@ -27,6 +28,11 @@ bool isAffine(const glm::mat4& matrix) {
 }
 
 } // namespace
+
+std::uint64_t endOfRange(std::uint64_t offset, std::uint64_t bytes) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+    return offset > kMost - bytes ? kMost : offset + bytes;
+}
 
 std::uint64_t triangleCount(const MeshView& view) {
     return (view.indexType == IndexType::None ? view.vertexCount : view.indexCount) / 3;
@@ -56,9 +62,9 @@ Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view, 
             std::to_string(view.vertexStrideBytes) + ", offset " +
             std::to_string(view.positionOffsetBytes));
     if (view.vertexCount > 0) {
-        const std::uint64_t needed = view.positionOffsetBytes +
-                                     std::uint64_t{view.vertexCount - 1} * view.vertexStrideBytes +
-                                     kPositionBytes;
+        const std::uint64_t needed = endOfRange(
+            view.positionOffsetBytes,
+            std::uint64_t{view.vertexCount - 1} * view.vertexStrideBytes + kPositionBytes);
         const std::uint64_t found = bufferBytes(gl, view.vertexBuffer);
         if (needed > found)
             return invalid("expected a vertex buffer of " + std::to_string(needed) + " bytes for " +
@@ -80,7 +86,7 @@ Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view, 
         if (view.indexOffsetBytes % size != 0)
             return invalid("expected an index offset in multiples of " + std::to_string(size) +
                            " bytes, found " + std::to_string(view.indexOffsetBytes));
-        const std::uint64_t needed = view.indexOffsetBytes + view.indexCount * size;
+        const std::uint64_t needed = endOfRange(view.indexOffsetBytes, view.indexCount * size);
         const std::uint64_t found = bufferBytes(gl, view.indexBuffer);
         if (needed > found)
             return invalid("expected an index buffer of " + std::to_string(needed) + " bytes for " +
@@ -100,6 +106,13 @@ Result<void> checkDrawSource(const DrawSource& source, std::size_t index) {
                      "voxelize: source " + std::to_string(index) +
                          ": expected a DrawSource with a vertex stage and a draw callback, found "
                          "one without"};
+    // What 32-bit vertex counts can number.
+    constexpr std::uint64_t kMostTriangles = 0xffffffffu / 3;
+    if (source.maxTriangles > kMostTriangles)
+        return Error{ErrorCode::DeviceLimit, "voxelize: source " + std::to_string(index) +
+                                                 ": expected maxTriangles up to " +
+                                                 std::to_string(kMostTriangles) + ", found " +
+                                                 std::to_string(source.maxTriangles)};
     return {};
 }
 

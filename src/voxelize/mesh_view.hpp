@@ -16,6 +16,9 @@ namespace lamina {
 /// Checks that a DrawSource has a vertex stage and a callback. `index`: as above.
 [[nodiscard]] Result<void> checkDrawSource(const DrawSource& source, std::size_t index);
 
+/// offset + bytes, at most the largest number: an offset near it must not wrap around.
+[[nodiscard]] std::uint64_t endOfRange(std::uint64_t offset, std::uint64_t bytes);
+
 /// Triangles a MeshView draws.
 [[nodiscard]] std::uint64_t triangleCount(const MeshView& view);
 

@@ -1,5 +1,6 @@
 #include "voxelize/volume_mesh.hpp"
 
+#include "voxelize/mesh_view.hpp"
 #include "voxelize/volume_constants.hpp"
 
 #include <array>
@@ -38,8 +39,8 @@ Result<void> checkStream(const gl::DeviceState& device, const VertexStream& stre
                          "; repack the vertices"};
     GLint64 found = 0;
     device.gl.GetNamedBufferParameteri64v(stream.buffer, GL_BUFFER_SIZE, &found);
-    const std::uint64_t needed =
-        stream.offsetBytes + std::uint64_t{vertexCount - 1} * stream.strideBytes + valueBytes;
+    const std::uint64_t needed = endOfRange(
+        stream.offsetBytes, std::uint64_t{vertexCount - 1} * stream.strideBytes + valueBytes);
     if (needed > static_cast<std::uint64_t>(found))
         return invalid("expected a buffer of " + std::to_string(needed) + " bytes for " +
                        std::to_string(vertexCount) + " vertices, found " + std::to_string(found));

@@ -310,6 +310,10 @@ TEST_F(VoxelizerGlTest, MeshViewsThatDoNotFitTheirBuffersAreRefused) {
     expectRefused([](MeshView& v) { v.vertexCount = 31; },
                   "expected a vertex buffer of 372 bytes for 31 vertices, found 360");
     expectRefused([](MeshView& v) { v.positionOffsetBytes = 4; }, "364 bytes for 30 vertices");
+    expectRefused([](MeshView& v) { v.positionOffsetBytes = ~std::uint64_t{3}; },
+                  "expected a vertex buffer of 18446744073709551615 bytes");
+    expectRefused([](MeshView& v) { v.indexOffsetBytes = ~std::uint64_t{3}; },
+                  "expected an index buffer of 18446744073709551615 bytes");
     expectRefused([](MeshView& v) { v.vertexStrideBytes = 0; }, "vertex stride above 0");
     expectRefused([](MeshView& v) { v.vertexStrideBytes = 13; }, "multiples of 4 bytes");
     expectRefused([](MeshView& v) { v.vertexStrideBytes = 1u << 20; }, "the device's limit is",
@@ -330,6 +334,11 @@ TEST_F(VoxelizerGlTest, ADrawSourcesBrokenVertexStageIsReportedWithItsLine) {
     DrawSource source;
     source.draw = [](const DrawContext&) {};
     EXPECT_THAT(failure(source).text, HasSubstr("expected a DrawSource with a vertex stage"));
+    source.vertexShader =
+        "LaminaVertex laminaVertex() { return LaminaVertex(vec3(0), vec3(0), 0u); }";
+    source.maxTriangles = (std::uint64_t{1} << 62) + 1;
+    EXPECT_THAT(failure(source).text, HasSubstr("found 4611686018427387905"));
+    source.maxTriangles = 0;
     source.vertexShader = "// first line\nLaminaVertex laminaVertex() { return missing; }\n";
     const Error error = failure(source);
     EXPECT_EQ(error.code, ErrorCode::ShaderError);

@@ -194,6 +194,8 @@ TEST(GridTransform, BadInputIsNamed) {
     EXPECT_THAT(boxError({}, {2, 2, 2}), HasSubstr("min < max on each axis"));
     EXPECT_THAT(boxError({{0, 0, kNan}, {1, 1, 1}}, {2, 2, 2}), HasSubstr("finite box"));
     EXPECT_THAT(boxError(kBox, {2, 0, 2}), HasSubstr("found 2 x 0 x 2"));
+    EXPECT_THAT(GridTransform::box(kBox, {2, 2, 2}, static_cast<Axis>(9)).error().text,
+                HasSubstr("expected axis X, Y or Z, found value 9"));
 
     const auto cameraError = [](auto change, const SliceDistribution& distribution =
                                                  SliceDistribution::linear()) {

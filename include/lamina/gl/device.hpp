@@ -85,9 +85,13 @@ struct DeviceInfo {
 /// One device per context; several devices live side by side. Use a device, and destroy it and
 /// every object made from it, on the thread where its context is current. Move-only.
 ///
+/// A moved-from device, grid or other object may be destroyed or assigned to, nothing else.
+///
 /// What every call leaves as it was: all GL state it touches, put back before it returns, except
 /// where its documentation says otherwise (bind()). What it cannot hide from: active occlusion,
-/// primitive and timer queries count its draws; do not call inside glBeginConditionalRender.
+/// primitive and timer queries count its draws; do not call inside glBeginConditionalRender. Calls
+/// that allocate GL memory take a GL error that the host left pending off the queue, with a
+/// message.
 class LAMINA_API Device {
 public:
     /// Looks at the context current on this thread. `load` is used during this call only.
