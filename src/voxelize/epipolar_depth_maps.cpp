@@ -1,8 +1,8 @@
 #include "voxelize/epipolar_depth_maps.hpp"
 
+#include "gl/fragment_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
-#include "voxelize/epipolar_state_guard.hpp"
 #include "voxelize/mesh_view.hpp"
 
 #include "lamina/shared/constants.glsl"
@@ -95,7 +95,7 @@ void DepthMapRenderer::draw(std::span<const GeometrySource> sources,
     const gl::DebugGroup group(*mDevice, "lamina: light depths");
     const GladGLContext& gl = mDevice->gl;
     gl::RasterStateGuard guard(*mDevice, 1);
-    const EpipolarDepthGuard depthGuard(*mDevice);
+    const gl::DepthStateGuard depthGuard(*mDevice, GL_GREATER);
     uploadMatrices(sources, faces);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, mFramebuffer.id());
     gl.ViewportIndexedf(0, 0.0f, 0.0f, static_cast<float>(mTexels), static_cast<float>(mTexels));

@@ -1,8 +1,8 @@
+#include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 #include "voxelize/epipolar_depth_maps.hpp"
 #include "voxelize/epipolar_host_maps.hpp"
-#include "voxelize/epipolar_state_guard.hpp"
 
 #include <lamina/voxelize/epipolar_voxelizer.hpp>
 
@@ -116,7 +116,8 @@ void EpipolarVoxelizer::Impl::rectifyBatch(GLuint program, GLuint texture,
     const gl::DebugGroup group(*device, "lamina: rectify light depths");
     const GladGLContext& gl = device->gl;
     const gl::ComputeStateGuard guard(*device, 0, 2);
-    const EpipolarBindingsGuard bindings(*device);
+    const gl::TextureUnitGuard textures(*device, LAMINA_EPIPOLAR_PASS_DEPTH_UNIT, 1);
+    const gl::ImageUnitGuard images(*device, LAMINA_EPIPOLAR_PASS_WORD_IMAGE + 1);
     // New storage each time: dispatches of the last call may still read the old.
     gl.NamedBufferData(maps.id(), static_cast<GLsizeiptr>(blocks.size_bytes()), blocks.data(),
                        GL_STREAM_DRAW);
@@ -299,7 +300,8 @@ Result<void> EpipolarVoxelizer::scan(EpipolarGrid& grid) {
     const gl::DebugGroup group(device, "lamina: scan shadow volumes");
     const GladGLContext& gl = device.gl;
     const gl::ComputeStateGuard guard(device, 0, 1);
-    const EpipolarBindingsGuard bindings(device);
+    const gl::TextureUnitGuard textures(device, LAMINA_EPIPOLAR_PASS_DEPTH_UNIT, 1);
+    const gl::ImageUnitGuard images(device, LAMINA_EPIPOLAR_PASS_WORD_IMAGE + 1);
     const GLuint buffer = grid.buffer();
     gl.BindBuffersBase(GL_SHADER_STORAGE_BUFFER, LAMINA_EPIPOLAR_PASS_SPACE_BINDING, 1, &buffer);
     gl.BindImageTexture(LAMINA_EPIPOLAR_PASS_WORD_IMAGE, grid.texture(), 0, GL_TRUE, 0,

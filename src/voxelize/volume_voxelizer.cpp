@@ -1,5 +1,7 @@
 #include <lamina/voxelize/volume_voxelizer.hpp>
 
+#include "gl/binding_guards.hpp"
+#include "gl/fragment_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 #include "voxelize/mesh_view.hpp"
@@ -8,7 +10,6 @@
 #include "voxelize/volume_formats.hpp"
 #include "voxelize/volume_mesh.hpp"
 #include "voxelize/volume_resolver.hpp"
-#include "voxelize/volume_state.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -375,9 +376,9 @@ Result<VolumeStats> VolumeVoxelizer::voxelize(std::span<const GeometrySource> so
 
     const GladGLContext& gl = impl.device->gl;
     gl::RasterStateGuard guard(*impl.device, LAMINA_VOLUME_MATERIAL_BLOCK_BINDING + 1);
-    const BlendStateGuard blendGuard(*impl.device, kTargetCount);
-    const ImageUnitGuard imageGuard(*impl.device, 2);
-    const IndirectDrawGuard indirectGuard(*impl.device);
+    const gl::BlendStateGuard blendGuard(*impl.device, kTargetCount, gl::Blending::Add);
+    const gl::ImageUnitGuard imageGuard(*impl.device, 2);
+    const gl::DrawBufferGuard bufferGuard(*impl.device, 1);
     impl.uploadMaterials(materials);
     impl.uploadDrawBlocks(*prepared, passCount);
     const std::array<GLuint, 2> blocks = {out.uniformBuffer(), impl.materialBlock.id()};
