@@ -1,6 +1,7 @@
 #include "bench_case.hpp"
 
 #include <lamina/mesh_io/mesh_file.hpp>
+#include <lamina/mesh_io/subdivision.hpp>
 
 #include <reference/shapes.hpp>
 
@@ -58,6 +59,17 @@ std::vector<std::shared_ptr<NamedMesh>> benchMeshes() {
         for (const char* name : kMeshNames)
             for (const char* extension : kExtensions)
                 addFile(meshes, name, fs::path(directory) / (std::string(name) + extension));
+    return meshes;
+}
+
+std::vector<std::shared_ptr<NamedMesh>> scalingMeshes() {
+    constexpr unsigned kLevels = 5;
+    std::vector<std::shared_ptr<NamedMesh>> meshes;
+    for (unsigned level = 0; level <= kLevels; ++level)
+        meshes.push_back(std::make_shared<NamedMesh>("knot_loop" + std::to_string(level), [level] {
+            // 10,240 triangles, times four a level.
+            return subdivide(reference::makeTorusKnot({}, 1.0f, 0.3f, 2, 3, 256, 20), level);
+        }));
     return meshes;
 }
 

@@ -35,6 +35,8 @@ private:
 /// Procedural meshes, glmark2's bunny, and the meshes of known names in the folder that the
 /// environment variable LAMINA_MESH_DIR names, as far as they exist.
 [[nodiscard]] std::vector<std::shared_ptr<NamedMesh>> benchMeshes();
+/// One shape at about 10k, 40k, ... 10M triangles by Loop subdivision, named "knot_loop0", ...
+[[nodiscard]] std::vector<std::shared_ptr<NamedMesh>> scalingMeshes();
 
 /// What is voxelized: cubes, `resolution` of them on the mesh's longest side; columns along z.
 struct Case {
@@ -55,6 +57,8 @@ void report(benchmark::State& state, const TriangleMesh& mesh, const GridTransfo
 
 /// Each registers benchmarks of one method, named "mesh/resolution/method".
 void registerVoxelizers(const Device& device, const Case& what);
+void registerVolumes(const Device& device, const Case& what);
+void registerEpipolar(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
 void registerSlicemapPasses(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
 void registerHostOverlap(const Case& what);
 #if defined(LAMINA_HAS_OPENVDB)

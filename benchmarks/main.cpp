@@ -62,13 +62,20 @@ void registerAll(const Device& device) {
             const bench::Case what{mesh, resolution};
             bench::registerVoxelizers(device, what);
             bench::registerHostOverlap(what);
+            if (resolution <= 256)
+                bench::registerVolumes(device, what);
 #if defined(LAMINA_HAS_OPENVDB)
             bench::registerOpenVdb(what);
 #endif
         }
     for (const auto& mesh : meshes)
-        if (mesh->name == "knot_100k")
+        if (mesh->name == "knot_100k") {
             bench::registerSlicemapPasses(device, mesh);
+            bench::registerEpipolar(device, mesh);
+        }
+    for (const auto& mesh : bench::scalingMeshes())
+        for (const std::uint32_t resolution : {64u, 128u, 256u, 512u, 1024u})
+            bench::registerVoxelizers(device, {mesh, resolution});
 }
 
 int run(int argc, char** argv) {

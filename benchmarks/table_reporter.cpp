@@ -10,10 +10,20 @@ double counter(const benchmark::BenchmarkReporter::Run& run, const char* name) {
     return found == run.counters.end() ? 0.0 : found->second.value;
 }
 
-std::string milliseconds(double value) {
+std::string number(double value, int decimals) {
     char text[32];
-    std::snprintf(text, sizeof text, value < 100.0 ? "%.2f" : "%.0f", value);
+    std::snprintf(text, sizeof text, "%.*f", decimals, value);
     return text;
+}
+
+std::string milliseconds(double value) {
+    return number(value, value < 100.0 ? 2 : 0);
+}
+
+/// What a method does not report is "-", not 0.
+std::string rate(const benchmark::BenchmarkReporter::Run& run, const char* name, double scale,
+                 int decimals) {
+    return run.counters.contains(name) ? number(counter(run, name) * scale, decimals) : "-";
 }
 
 } // namespace
@@ -28,11 +38,11 @@ void TableReporter::printRow(const std::string& method, const Run& run) {
     if (mFirstTime == 0.0)
         mFirstTime = time;
     const double gpu = counter(run, "GPU ms");
-    std::printf("  %-38s %9s %9s %9s %8.2f %9.2f %10.1f %11.0f %9.1f\n", method.c_str(),
+    std::printf("  %-38s %9s %9s %9s %8.2f %9s %10s %11s %9.1f\n", method.c_str(),
                 milliseconds(time).c_str(), milliseconds(run.GetAdjustedCPUTime()).c_str(),
                 gpu > 0.0 ? milliseconds(gpu).c_str() : "-", time / mFirstTime,
-                counter(run, "triangles/s") * 1e-6, counter(run, "voxels/s") * 1e-6,
-                counter(run, "set voxels"), counter(run, "bytes") / 1048576.0);
+                rate(run, "triangles/s", 1e-6, 2).c_str(), rate(run, "voxels/s", 1e-6, 1).c_str(),
+                rate(run, "set voxels", 1.0, 0).c_str(), counter(run, "bytes") / 1048576.0);
 }
 
 void TableReporter::ReportRuns(const std::vector<Run>& runs) {

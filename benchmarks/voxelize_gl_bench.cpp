@@ -1,62 +1,13 @@
 #include "bench_case.hpp"
-
-#include "gl/device_state.hpp"
+#include "gl_timing.hpp"
 
 #include <lamina/voxelize/voxelizer.hpp>
-
-#include <optional>
 
 namespace lamina::bench {
 namespace {
 
-/// GL time of a scope between begin() and end(), where the implementation has a timer.
-class GpuTimer {
-public:
-    explicit GpuTimer(const GladGLContext& gl)
-        : mGl(gl) {
-        GLint bits = 0;
-        mGl.GetQueryiv(GL_TIME_ELAPSED, GL_QUERY_COUNTER_BITS, &bits);
-        if (bits > 0)
-            mGl.GenQueries(1, &mQuery);
-    }
-    ~GpuTimer() { mGl.DeleteQueries(1, &mQuery); }
-    GpuTimer(const GpuTimer&) = delete;
-    GpuTimer& operator=(const GpuTimer&) = delete;
-
-    void begin() const {
-        if (mQuery != 0)
-            mGl.BeginQuery(GL_TIME_ELAPSED, mQuery);
-    }
-    void end() const {
-        if (mQuery != 0)
-            mGl.EndQuery(GL_TIME_ELAPSED);
-    }
-    /// Adds the time of the last scope; the GPU must have finished it.
-    void collect() {
-        if (mQuery == 0)
-            return;
-        GLuint64 nanoseconds = 0;
-        mGl.GetQueryObjectui64v(mQuery, GL_QUERY_RESULT, &nanoseconds);
-        mTotal += static_cast<double>(nanoseconds);
-    }
-    /// Sum of the scopes in seconds; nothing without a working timer: llvmpipe's sees no compute
-    /// work and reports some nanoseconds.
-    [[nodiscard]] std::optional<double> total() const {
-        constexpr double kLeastSeconds = 1e-5;
-        const double seconds = mTotal * 1e-9;
-        return seconds > kLeastSeconds ? std::optional(seconds) : std::nullopt;
-    }
-
-private:
-    const GladGLContext& mGl;
-    GLuint mQuery = 0;
-    double mTotal = 0.0;
-};
-
-/// Voxelizes again and again, waiting for the GL after each; the programs are warm by then.
 Result<void> run(benchmark::State& state, const Device& device, const TriangleMesh& mesh,
                  const GridTransform& transform, Coverage coverage) {
-    const GladGLContext& gl = device.state()->gl;
     auto voxelizer = Voxelizer::create(device, {.coverage = coverage});
     if (!voxelizer)
         return voxelizer.error();
@@ -68,54 +19,37 @@ Result<void> run(benchmark::State& state, const Device& device, const TriangleMe
         return grid.error();
     const GeometrySource sources[] = {buffers->view()};
 
-    constexpr int kWarmUps = 2;
-    Result<VoxelizeStats> stats = VoxelizeStats{};
-    for (int i = 0; i < kWarmUps && stats; ++i)
-        stats = (*voxelizer)->voxelize(sources, transform, *grid);
-    if (!stats)
-        return stats.error();
-    gl.Finish();
-
-    GpuTimer timer(gl);
-    for ([[maybe_unused]] auto iteration : state) {
-        timer.begin();
-        stats = (*voxelizer)->voxelize(sources, transform, *grid);
-        timer.end();
-        gl.Finish();
-        timer.collect();
-    }
-    if (!stats)
-        return stats.error();
+    VoxelizeStats stats;
+    auto measured = measure(state, device, [&]() -> Result<void> {
+        auto done = (*voxelizer)->voxelize(sources, transform, *grid);
+        if (!done)
+            return done.error();
+        stats = *done;
+        return {};
+    });
+    if (!measured)
+        return measured.error();
 
     auto bits = grid->download();
     if (!bits)
         return bits.error();
     report(state, mesh, transform, bits->count(), grid->gpuBytes());
-    state.counters["passes"] = stats->passes;
-    if (const auto seconds = timer.total())
-        state.counters["GPU ms"] =
-            benchmark::Counter(*seconds * 1e3, benchmark::Counter::kAvgIterations);
+    state.counters["passes"] = stats.passes;
     return {};
 }
 
 void registerRun(const Device& device, const std::string& name, std::shared_ptr<NamedMesh> mesh,
                  Coverage coverage,
                  std::function<Result<GridTransform>(const TriangleMesh&)> makeGrid) {
-    const auto body = [=, &device](benchmark::State& state) {
-        Result<void> done;
-        if (auto loaded = mesh->get(); !loaded)
-            done = loaded.error();
-        else if (auto transform = makeGrid(**loaded); !transform)
-            done = transform.error();
-        else
-            done = run(state, device, **loaded, *transform, coverage);
-        if (!done)
-            state.SkipWithError(done.error().text.c_str());
-    };
-    benchmark::RegisterBenchmark(name.c_str(), body)
-        ->UseRealTime()
-        ->MeasureProcessCPUTime()
-        ->Unit(benchmark::kMillisecond);
+    registerGl(name, [=, &device](benchmark::State& state) -> Result<void> {
+        auto loaded = mesh->get();
+        if (!loaded)
+            return loaded.error();
+        auto transform = makeGrid(**loaded);
+        if (!transform)
+            return transform.error();
+        return run(state, device, **loaded, *transform, coverage);
+    });
 }
 
 } // namespace
