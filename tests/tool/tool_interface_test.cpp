@@ -52,6 +52,7 @@ TEST_F(ToolInterface, HelpNamesEveryOptionWordAndExitCode) {
                              "-q,--quiet",
                              "-v,--verbose",
                              "--info",
+                             "--compare",
                              "--list-contexts",
                              "--version",
                              "-h,--help",

@@ -17,7 +17,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
+#include <map>
 
 namespace lamina::test {
 namespace {
@@ -339,6 +341,54 @@ TEST(ToolVoxels, RealMeshesStayWithinTheReferences) {
         ASSERT_TRUE(mesh.hasValue()) << entry.path();
         expectFilledWithin(*mesh, entry.path().string(), folder / "mesh.json", array);
     }
+}
+
+TEST(ToolVoxels, CompareSetsEveryMethodBesideTheExactVoxels) {
+    const TemporaryFolder folder;
+    const std::string mesh = folder / "ball.ply";
+    writePly(mesh, reference::makeIcosphere({0, 0, 0}, 1, 3));
+    const std::string stats = folder / "stats.json";
+    const ToolResult run = runTool({mesh, "-r", "48", "--compare", "--stats", stats});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    EXPECT_NE(run.out.find("missing %"), std::string::npos);
+
+    std::map<std::pair<std::string, std::string>, nlohmann::json> rows;
+    const auto record = nlohmann::json::parse(std::ifstream(stats));
+    for (const auto& row : record["comparison"])
+        rows[{row["coverage"], row["backend"]}] = row;
+    EXPECT_GE(rows.size(), 5u);
+    for (const auto& [method, row] : rows) {
+        SCOPED_TRACE(method.first + " by " + method.second);
+        EXPECT_GT(row["milliseconds"], 0.0);
+        EXPECT_GT(row["passes"], 0);
+        // What the tool writes for the same method.
+        const std::string voxels = folder / "voxels.npy";
+        EXPECT_EQ(row["set"], voxelsOf({mesh, "-r", "48", "--coverage", method.first, "--backend",
+                                        method.second},
+                                       voxels)
+                                  .setCount());
+    }
+    const auto& exact = rows[{"conservative", "overlap"}];
+    EXPECT_EQ(exact["iou"], 1.0);
+    EXPECT_EQ(exact["missing"], 0);
+    const auto& sampled = rows[{"sampled", "slicemap"}];
+    EXPECT_GT(sampled["missing"], 0);
+    EXPECT_EQ(sampled["extra"], 0);
+    EXPECT_EQ(sampled["set"].get<int>() + sampled["missing"].get<int>(), exact["set"]);
+}
+
+TEST(ToolVoxels, CompareKeepsToTheCoverageAskedFor) {
+    const TemporaryFolder folder;
+    const std::string mesh = folder / "ball.ply";
+    writePly(mesh, reference::makeIcosphere({0, 0, 0}, 1, 2));
+    const ToolResult run =
+        runTool({mesh, "-r", "16", "--compare", "--coverage", "solid", "--stats", "-"});
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+    const auto rows = nlohmann::json::parse(run.out)["comparison"];
+    ASSERT_FALSE(rows.empty());
+    for (const auto& row : rows)
+        EXPECT_EQ(row["coverage"], "solid");
+    EXPECT_EQ(runTool({mesh, "--compare", "-o", folder / "a.npy"}).exitCode, 2);
 }
 
 } // namespace

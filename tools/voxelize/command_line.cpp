@@ -63,7 +63,7 @@ struct Arguments {
     std::vector<double> bounds;
     std::vector<std::uint32_t> counts;
     std::string axis = "auto";
-    std::string coverage = "conservative";
+    std::optional<std::string> coverage;
     std::string backend = "auto";
     std::string context = "auto";
     std::string up = "y";
@@ -194,6 +194,15 @@ void addOtherModes(CLI::App& app, Request& request) {
                      "would get")
             ->group(group);
     info->excludes(app.get_option("--output"))->excludes(app.get_option("--preview"));
+    auto* compare =
+        app.add_flag("--compare", request.compare,
+                     "Time every backend and coverage (or the one of --coverage) on this mesh and "
+                     "grid, and set their voxels beside the exact ones")
+            ->group(group);
+    compare->excludes(app.get_option("--output"))
+        ->excludes(app.get_option("--preview"))
+        ->excludes(app.get_option("--backend"))
+        ->excludes(info);
     app.add_flag("--list-contexts", request.listContexts,
                  "Say which OpenGL contexts this machine offers, and why others fail")
         ->group(group);
@@ -242,7 +251,10 @@ void takePreview(const Arguments& args, Request& request) {
 void takeArguments(const Arguments& args, Request& request) {
     request.mesh = args.mesh;
     takeGrid(args, request.grid);
-    request.coverage = choose("--coverage", kCoverages, args.coverage);
+    if (args.coverage)
+        request.coverage = choose("--coverage", kCoverages, *args.coverage);
+    if (request.compare && args.coverage)
+        request.comparedCoverage = request.coverage;
     request.backend = choose("--backend", kBackends, args.backend);
     request.context = choose("--context", kContexts, args.context);
     request.up = choose("--up", kAxes, args.up);
@@ -258,10 +270,12 @@ void takeArguments(const Arguments& args, Request& request) {
     if (request.mesh.empty())
         throw Failure(ExitCode::BadCommandLine,
                       "expected a mesh file (.obj .ply .stl .off), found none; see --help");
-    if (!request.infoOnly && request.outputs.empty() && !request.preview && !request.stats)
+    if (!request.infoOnly && !request.compare && request.outputs.empty() && !request.preview &&
+        !request.stats)
         throw Failure(
             ExitCode::BadCommandLine,
-            "nothing to make: expected -o FILE, --preview FILE.png, --stats FILE or --info");
+            "nothing to make: expected -o FILE, --preview FILE.png, --stats FILE, --compare or "
+            "--info");
 }
 
 } // namespace

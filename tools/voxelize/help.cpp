@@ -69,6 +69,7 @@ Examples:
   lamina-voxelize part.stl --voxel-size 0.5 --axis z --up z -o part.vti --stats -
   lamina-voxelize room.ply --bounds -4 0 -4 4 3 4 --grid 256 96 256 -o room.binvox
   lamina-voxelize scan.ply --info
+  lamina-voxelize bunny.obj -r 512 --compare
 )";
 
 HelpFormatter::HelpFormatter() {

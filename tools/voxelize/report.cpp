@@ -15,6 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kMebibyte = 1048576.0;
+
 /// Milliseconds to a thousandth.
 double rounded(double milliseconds) {
     return std::round(milliseconds * 1000.0) / 1000.0;
@@ -67,6 +69,24 @@ Json toJson(const RendererFacts& renderer) {
             {"failed_attempts", renderer.attempts}};
 }
 
+/// Share of the exact set's voxels, in percent.
+double percentOfExact(const ComparedMethod& method, std::uint64_t voxels) {
+    const std::uint64_t exact = method.againstExact.both + method.againstExact.onlyFirst;
+    return exact == 0 ? 0.0 : 100.0 * static_cast<double>(voxels) / static_cast<double>(exact);
+}
+
+Json toJson(const ComparedMethod& method) {
+    return {{"coverage", method.coverage},
+            {"backend", method.backend},
+            {"milliseconds", rounded(method.milliseconds)},
+            {"passes", method.passes},
+            {"grid_bytes", method.deviceBytes},
+            {"set", method.set},
+            {"iou", method.againstExact.iou()},
+            {"missing", method.againstExact.onlyFirst},
+            {"extra", method.againstExact.onlySecond}};
+}
+
 double voxelCount(const GridPlan& grid) {
     return static_cast<double>(grid.counts.x) * grid.counts.y * grid.counts.z;
 }
@@ -110,6 +130,8 @@ std::string statsJson(const RunRecord& record) {
                            {"passes", voxels.passes},
                            {"grid_bytes", voxels.deviceBytes}};
     }
+    for (const ComparedMethod& method : record.comparison)
+        json["comparison"].push_back(toJson(method));
     if (record.renderer)
         json["renderer"] = toJson(*record.renderer);
     Json files = Json::array();
@@ -150,6 +172,27 @@ std::string summary(const RunRecord& record) {
         text += fmt::format("wrote     {} ({}, {:.0f} ms)\n", file.file.string(),
                             bytesText(static_cast<double>(file.bytes)), file.milliseconds);
     return text;
+}
+
+std::string comparisonTable(const RunRecord& record) {
+    std::string text =
+        fmt::format("mesh      {}: {} triangles\ngrid      {}\nrenderer  {}\n\n"
+                    "{:<13} {:<15} {:>10} {:>6} {:>12} {:>9} {:>8} {:>10} {:>9}\n",
+                    record.mesh.file.string(), record.mesh.triangles, gridText(*record.grid),
+                    record.renderer->context.renderer, "coverage", "backend", "ms", "passes",
+                    "voxels", "MiB", "IoU", "missing %", "extra %");
+    for (const ComparedMethod& method : record.comparison)
+        text += fmt::format(
+            "{:<13} {:<15} {:>10.2f} {:>6} {:>12} {:>9.1f} {:>8.5f} {:>10.4f} {:>9.4f}\n",
+            method.coverage, method.backend, method.milliseconds, method.passes, method.set,
+            static_cast<double>(method.deviceBytes) / kMebibyte, method.againstExact.iou(),
+            percentOfExact(method, method.againstExact.onlyFirst),
+            percentOfExact(method, method.againstExact.onlySecond));
+    return text +
+           "\nms: median of up to 7 voxelizations, until the GPU is done, without upload and "
+           "read-back.\nIoU, missing, extra: against the exact set of all voxels that a triangle "
+           "touches, or, for\nsolid, of all voxels whose centre lies inside. Sampled, filled and "
+           "separating6 are thinner by\ndefinition.\n";
 }
 
 std::string meshDescription(const RunRecord& record) {

@@ -15,4 +15,7 @@ namespace lamina::tool {
 /// What --info prints.
 [[nodiscard]] std::string meshDescription(const RunRecord& record);
 
+/// What --compare prints.
+[[nodiscard]] std::string comparisonTable(const RunRecord& record);
+
 } // namespace lamina::tool

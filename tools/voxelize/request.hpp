@@ -30,7 +30,7 @@ struct StatsRequest {
 struct Request {
     std::filesystem::path mesh;
     GridRequest grid;
-    Coverage coverage = Coverage::Filled;
+    Coverage coverage = Coverage::Conservative;
     Backend backend = Backend::Automatic;
     headless::ContextApi context = headless::ContextApi::Automatic;
     Axis up = Axis::Y;
@@ -38,8 +38,10 @@ struct Request {
     std::vector<std::filesystem::path> outputs;
     std::optional<PreviewRequest> preview;
     std::optional<StatsRequest> stats;
-    bool infoOnly = false;     ///< Describe mesh and grid, voxelize nothing.
-    bool listContexts = false; ///< Nothing else.
+    bool infoOnly = false;                    ///< Describe mesh and grid, voxelize nothing.
+    bool compare = false;                     ///< Measure all methods, write no voxels.
+    std::optional<Coverage> comparedCoverage; ///< Only this one's methods.
+    bool listContexts = false;                ///< Nothing else.
     bool quiet = false;
     bool verbose = false;
 };

@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include "compare.hpp"
 #include "device_work.hpp"
 #include "failure.hpp"
 #include "file_guard.hpp"
@@ -144,7 +145,10 @@ void run(const Request& request) {
             clock.run("inspect", "inspecting the mesh", [&] { return require(inspect(mesh)); });
     record.grid = planGrid(request.grid, mesh);
 
-    if (!request.infoOnly) {
+    if (request.compare) {
+        checkMemory(*record.grid, request.memoryLimitBytes);
+        compareOnDevice(request, mesh, clock, record);
+    } else if (!request.infoOnly) {
         checkMemory(*record.grid, request.memoryLimitBytes);
         const BitGrid bits = voxelizeOnDevice(request, std::move(mesh), clock, record);
         writeVoxels(request, bits, clock, record);
@@ -154,10 +158,14 @@ void run(const Request& request) {
     clock.finish();
     record.stages = clock.times();
     record.totalMilliseconds = clock.totalMilliseconds();
-    if (request.infoOnly && !(request.stats && request.stats->toStandardOutput()))
-        printToStandardOutput(meshDescription(record));
-    else if (!request.infoOnly)
+    const bool statsOnly = request.stats && request.stats->toStandardOutput();
+    if (request.infoOnly || request.compare) {
+        if (!statsOnly)
+            printToStandardOutput(request.compare ? comparisonTable(record)
+                                                  : meshDescription(record));
+    } else {
         tell(request, record);
+    }
     if (request.stats)
         writeStats(*request.stats, record);
 }

@@ -3,6 +3,7 @@
 #include "grid_plan.hpp"
 #include "stage_clock.hpp"
 
+#include <lamina/grid/bit_grid.hpp>
 #include <lamina/headless/context.hpp>
 #include <lamina/mesh_io/mesh_report.hpp>
 
@@ -39,6 +40,17 @@ struct VoxelFacts {
     std::optional<std::uint64_t> oddColumns; ///< Of solid coverage: where the mesh is not closed.
 };
 
+/// A row of --compare.
+struct ComparedMethod {
+    std::string coverage;
+    std::string backend;
+    double milliseconds = 0.0; ///< Median, until the GPU is done.
+    std::uint32_t passes = 0;
+    std::uint64_t deviceBytes = 0;
+    std::uint64_t set = 0;
+    BitGridComparison againstExact; ///< First: the exact set; second: this method's.
+};
+
 struct FileFacts {
     std::filesystem::path file;
     std::string format;
@@ -52,6 +64,7 @@ struct RunRecord {
     std::optional<GridPlan> grid;
     std::optional<RendererFacts> renderer;
     std::optional<VoxelFacts> voxels;
+    std::vector<ComparedMethod> comparison;
     std::vector<FileFacts> files;
     std::vector<StageTime> stages;
     double totalMilliseconds = 0.0;

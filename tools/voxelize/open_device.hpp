@@ -1,0 +1,23 @@
+#pragma once
+
+#include "request.hpp"
+#include "run_record.hpp"
+
+#include <lamina/gl/device.hpp>
+#include <lamina/headless/context.hpp>
+
+namespace lamina::tool {
+
+/// A context of the kind that the request names, and Lamina's device on it.
+struct OpenDevice {
+    headless::Context context;
+    Device device;
+
+    /// Waits for the GPU, so that the time of a stage is what it cost.
+    void wait() const;
+};
+
+/// Fills renderer of `record`. `clock` must outlive the result. Throws Failure.
+[[nodiscard]] OpenDevice openDevice(const Request& request, StageClock& clock, RunRecord& record);
+
+} // namespace lamina::tool
