@@ -88,7 +88,8 @@ TEST_F(OverlapGlTest, CameraGridsAgreeWithTheReference) {
 }
 
 TEST_F(OverlapGlTest, RealMeshesAgreeWithTheReference) {
-    for (const NamedMesh& mesh : test::readRealMeshes({"bunny.ply", "armadillo.ply", "dragon.ply"}))
+    for (const NamedMesh& mesh : test::readRealMeshes(
+             {"bunny.ply", "armadillo.ply", "dragon.ply", "sponza.ply", "teapot.ply"}))
         for (const std::uint32_t size : {256u, 512u})
             expectOverlap(mesh.mesh,
                           GridTransform::box(mesh.mesh.bounds(), glm::uvec3(size)).value(),
