@@ -1,12 +1,15 @@
-// Sets the bits of one column for one triangle; logic op OR gathers them ([ED06] 2.2).
+// Sets the bits of one column for one triangle; logic op OR gathers them ([ED06] 2.2), or XOR where the
+// inside is wanted (Eisemann and Decoret 2008).
 //
 // One invocation owns one (triangle, column) pair of one pass of 128 slices:
-//   1. reject columns whose centre the triangle does not own;
+//   1. reject columns that the triangle gives no depths (laminaDepthsInColumn);
 //   2. Sampled: the slice of the triangle's depth at the centre;
-//      Filled: the slices between the least and the greatest depth of the part of the triangle in
-//      the column's square, found as the extremes of an affine function over a convex polygon;
+//      Filled, Conservative: the slices between the least and the greatest depth of the part of the
+//      triangle in the column's square;
+//      Solid: all slices whose centre lies before the depth at the centre, to be toggled. What remains
+//      set has an odd number of crossings beyond it;
 //   3. write their bits of this pass.
-// permute LAMINA_COVERAGE = LAMINA_COVERAGE_SAMPLED LAMINA_COVERAGE_FILLED
+// permute LAMINA_COVERAGE = LAMINA_COVERAGE_SAMPLED LAMINA_COVERAGE_FILLED LAMINA_COVERAGE_CONSERVATIVE LAMINA_COVERAGE_SOLID
 #include <voxelize/draw_block.glsl>
 #include <voxelize/column_depths.glsl>
 
@@ -17,13 +20,31 @@ layout(std140, binding = LAMINA_PASS_GRID_BLOCK_BINDING) uniform LaminaPassGridB
 
 #include <lamina/slice_distribution.glsl>
 
-layout(location = 0) flat in dvec4 laminaEdge0;
-layout(location = 2) flat in dvec4 laminaEdge1;
-layout(location = 4) flat in dvec4 laminaEdge2;
-layout(location = 6) flat in dvec3 laminaDepthPlane;
-layout(location = 8) flat in dvec2 laminaDepthRange;
+#define LAMINA_STAGE in
+#include <voxelize/column_stage.glsl>
+
+LaminaColumnTriangle receivedTriangle() {
+    LaminaColumnTriangle triangle = kLaminaNoTriangle;
+    triangle.edges = dvec4[3](laminaEdge0, laminaEdge1, laminaEdge2);
+    triangle.depthPlane = laminaDepthPlane;
+    triangle.depthRange = laminaDepthRange;
+#if LAMINA_COVERAGE == LAMINA_COVERAGE_FILLED || LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
+    triangle.edgeValues = dvec2[3](laminaEdgeValues0, laminaEdgeValues1, laminaEdgeValues2);
+    triangle.isEdgeOn = laminaIsEdgeOn != 0;
+#endif
+    return triangle;
+}
 
 layout(location = 0) out uvec4 laminaBits;
+
+#if LAMINA_COVERAGE == LAMINA_COVERAGE_SOLID
+// A bit for each column: odd number of crossings. Atomic: 32 columns share a word.
+layout(r32ui, binding = LAMINA_COLUMN_PARITY_IMAGE) uniform uimage2D laminaColumnParity;
+
+void laminaToggleColumn(ivec2 column) {
+    imageAtomicXor(laminaColumnParity, ivec2(column.x >> 5, column.y), 1u << uint(column.x & 31));
+}
+#endif
 
 // Bits [first, last] of the pass's 128; first and last may lie outside.
 uvec4 bitRange(int first, int last) {
@@ -35,10 +56,8 @@ uvec4 bitRange(int first, int last) {
 }
 
 void main() {
-    LaminaColumnTriangle triangle =
-        LaminaColumnTriangle(dvec4[3](laminaEdge0, laminaEdge1, laminaEdge2), laminaDepthPlane, laminaDepthRange);
     dvec2 depths;
-    if (!laminaDepthsInColumn(triangle, dvec2(gl_FragCoord.xy), depths))
+    if (!laminaDepthsInColumn(receivedTriangle(), dvec2(gl_FragCoord.xy), depths))
         discard;
 
     int firstSlice = int(laminaDraw.pass.x);
@@ -47,6 +66,10 @@ void main() {
     int slice = laminaSliceAt(depths.x, laminaDraw);
     if (slice >= 0)
         laminaBits = bitRange(slice - firstSlice, slice - firstSlice);
+#elif LAMINA_COVERAGE == LAMINA_COVERAGE_SOLID
+    laminaBits = bitRange(-firstSlice, laminaLastCenterBefore(depths.x, laminaDraw) - firstSlice);
+    if (firstSlice == 0)
+        laminaToggleColumn(ivec2(gl_FragCoord.xy));
 #else
     double near = laminaDraw.depthRange.x;
     double far = near + 1.0lf / laminaDraw.depthRange.y;

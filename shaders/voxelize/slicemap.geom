@@ -3,27 +3,29 @@
 // One invocation owns one triangle:
 //   1. drop it if it is not finite or lies outside the depths of this pass;
 //   2. project it to columns and work out its exact edges and depth plane (LaminaColumnTriangle);
-//   3. emit a polygon that covers it after dilation by `dilation.x` pixels, so that the rasterizer's
-//      sub-pixel snapping loses no column; the fragment stage decides coverage exactly.
-// Degenerate projections (edge-on triangles) cover no column centre and are dropped.
+//   3. emit a polygon that covers the centres of its columns, widened by `dilation.x` pixels, so that
+//      the rasterizer's sub-pixel snapping loses none; the fragment stage decides coverage exactly.
+//      Every column inside the polygon gets exactly one fragment: Solid counts them.
+// Conservative: the columns whose squares the triangle touches, degenerate projections (edge-on
+// triangles) included. Else the columns whose centres it owns; edge-on triangles own none and are dropped.
+// permute LAMINA_COVERAGE = LAMINA_COVERAGE_SAMPLED LAMINA_COVERAGE_FILLED LAMINA_COVERAGE_CONSERVATIVE LAMINA_COVERAGE_SOLID
 #include <voxelize/draw_block.glsl>
-#include <voxelize/column_triangle.glsl>
+
+#define LAMINA_STAGE out
+#include <voxelize/column_stage.glsl>
 
 layout(triangles) in;
+#if LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
+layout(triangle_strip, max_vertices = 7) out;
+#else
 layout(triangle_strip, max_vertices = 4) out;
+#endif
 
 in LaminaVertexStage {
     dvec3 column;
 } laminaIn[];
 
-layout(location = 0) flat out dvec4 laminaEdge0;
-layout(location = 2) flat out dvec4 laminaEdge1;
-layout(location = 4) flat out dvec4 laminaEdge2;
-layout(location = 6) flat out dvec3 laminaDepthPlane;
-layout(location = 8) flat out dvec2 laminaDepthRange;
-
-// Mesa warns of variables that it cannot see set before the functions below read them.
-LaminaColumnTriangle triangle = LaminaColumnTriangle(dvec4[3](dvec4(0.0lf), dvec4(0.0lf), dvec4(0.0lf)), dvec3(0.0lf), dvec2(0.0lf));
+LaminaColumnTriangle triangle = kLaminaNoTriangle;
 
 void emit(dvec2 column) {
     laminaEdge0 = triangle.edges[0];
@@ -31,6 +33,12 @@ void emit(dvec2 column) {
     laminaEdge2 = triangle.edges[2];
     laminaDepthPlane = triangle.depthPlane;
     laminaDepthRange = triangle.depthRange;
+#if LAMINA_COVERAGE == LAMINA_COVERAGE_FILLED || LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
+    laminaEdgeValues0 = triangle.edgeValues[0];
+    laminaEdgeValues1 = triangle.edgeValues[1];
+    laminaEdgeValues2 = triangle.edgeValues[2];
+    laminaIsEdgeOn = triangle.isEdgeOn ? 1 : 0;
+#endif
     gl_Position = vec4(vec2(column * (2.0lf / dvec2(laminaDraw.size.xy)) - 1.0lf), 0.0, 1.0);
     EmitVertex();
 }
@@ -43,6 +51,91 @@ void emitRectangle(dvec2 low, dvec2 high) {
     EndPrimitive();
 }
 
+// The rectangle, without its part outside the grid.
+void emitClampedRectangle(dvec2 low, dvec2 high) {
+    dvec2 size = dvec2(laminaDraw.size.xy);
+    low = clamp(low, dvec2(0.0lf), size);
+    high = clamp(high, dvec2(0.0lf), size);
+    if (low.x < high.x && low.y < high.y)
+        emitRectangle(low, high);
+}
+
+// Columns between a centre and its fragments' squares, and what rasterization may lose. `farthest`: largest
+// coordinate; far outside the grid more is lost to the rounding of normalized device coordinates.
+double dilationRadius(double farthest) {
+    double rounding = double(laminaDraw.dilation.x) + farthest * 4.8e-7lf;
+#if LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
+    return 0.5lf + rounding;
+#else
+    return rounding;
+#endif
+}
+
+int longestEdge(dvec2 p[3]) {
+    dvec3 squares = dvec3(dot(p[1] - p[0], p[1] - p[0]), dot(p[2] - p[1], p[2] - p[1]), dot(p[0] - p[2], p[0] - p[2]));
+    return squares.x >= max(squares.y, squares.z) ? 0 : (squares.y >= squares.z ? 1 : 2);
+}
+
+#if LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
+// Triangles whose boxes hold fewer columns get their boxes: fewer corners than the hull, few idle fragments.
+const double kSmallBox = 16.0lf;
+
+// Narrower triangles get the hull of their longest edge.
+const double kNarrow = 1.0e-3lf;
+
+// The quadrant, counted from (+,+) against the clock, of the outward normal of an edge of a polygon that
+// is passed against the clock.
+int normalQuadrant(dvec2 along) {
+    dvec2 normal = dvec2(along.y, -along.x);
+    if (normal.y < 0.0lf)
+        return normal.x < 0.0lf ? 2 : 3;
+    return normal.x > 0.0lf ? 0 : (normal.y > 0.0lf ? 1 : 2);
+}
+
+// The hull of the squares of 2 `radius` about the corners of a triangle: at each corner, the square's
+// corners between the quadrants of the normals of the edges before and after it; four in all, for the
+// normals turn once around.
+void emitHull(dvec2 p[3], double radius) {
+    dvec2 u = p[1] - p[0];
+    dvec2 v = p[2] - p[0];
+    double orientation = u.x * v.y - u.y * v.x;
+    int first = longestEdge(p);
+    dvec2 base = p[(first + 1) % 3] - p[first];
+    dvec2 corners[3] = dvec2[](p[first], p[(first + 1) % 3], p[(first + 2) % 3]);
+    int cornerCount = 3;
+    if (abs(orientation) <= kNarrow * length(base)) {
+        cornerCount = 2;
+        radius += kNarrow;
+    } else if (orientation < 0.0lf) {
+        corners = dvec2[](corners[1], corners[0], corners[2]);
+    }
+    dvec2 hull[7];
+    int count = 0;
+    for (int i = 0; i < cornerCount; ++i) {
+        dvec2 before = corners[i] - corners[(i + cornerCount - 1) % cornerCount];
+        dvec2 after = corners[(i + 1) % cornerCount] - corners[i];
+        int quadrant = normalQuadrant(before);
+        int turns = (normalQuadrant(after) - quadrant) & 3;
+        for (int turn = 0; turn <= turns && count < 7; ++turn, ++quadrant) {
+            int corner = quadrant & 3;
+            hull[count++] = corners[i] + radius * dvec2(corner == 0 || corner == 3 ? 1.0lf : -1.0lf, corner <= 1 ? 1.0lf : -1.0lf);
+        }
+    }
+    for (int i = 0; i < count; ++i)
+        emit(hull[(i & 1) == 0 ? i >> 1 : count - 1 - (i >> 1)]);
+    EndPrimitive();
+}
+
+void emitCover(dvec2 p[3], dvec2 low, dvec2 high) {
+    dvec2 farthest = max(abs(low), abs(high));
+    double radius = dilationRadius(max(farthest.x, farthest.y));
+    dvec2 size = high - low + 1.0lf;
+    if (size.x * size.y <= kSmallBox || min(size.x, size.y) <= 1.0lf + kNarrow)
+        emitClampedRectangle(low - radius, high + radius);
+    else
+        emitHull(p, radius);
+}
+#else
 vec2 unitNormal(dvec4 edge) {
     vec2 direction = vec2(edge.zw);
     return vec2(direction.y, -direction.x) / length(direction);
@@ -50,10 +143,9 @@ vec2 unitNormal(dvec4 edge) {
 
 // A triangle in front of the eye: its three edges moved outwards, or, where that would make a spike,
 // the rectangle around its longest edge.
-void emitDilated(dvec2 p[3]) {
-    // Corners far outside the grid lose more to the rounding of normalized device coordinates.
-    dvec2 farthest = max(abs(p[0]), max(abs(p[1]), abs(p[2])));
-    float radius = laminaDraw.dilation.x + float(max(farthest.x, farthest.y)) * 4.8e-7;
+void emitCover(dvec2 p[3], dvec2 lowest, dvec2 highest) {
+    dvec2 farthest = max(abs(lowest), abs(highest));
+    float radius = float(dilationRadius(max(farthest.x, farthest.y)));
     vec2 normals[3] = vec2[](unitNormal(triangle.edges[0]), unitNormal(triangle.edges[1]), unitNormal(triangle.edges[2]));
     vec3 miter = 1.0 + vec3(dot(normals[2], normals[0]), dot(normals[0], normals[1]), dot(normals[1], normals[2]));
     if (min(miter.x, min(miter.y, miter.z)) > 1.0e-4) {
@@ -63,8 +155,7 @@ void emitDilated(dvec2 p[3]) {
         EndPrimitive();
         return;
     }
-    vec3 squaredLengths = vec3(dot(p[1] - p[0], p[1] - p[0]), dot(p[2] - p[1], p[2] - p[1]), dot(p[0] - p[2], p[0] - p[2]));
-    int first = squaredLengths.x >= max(squaredLengths.y, squaredLengths.z) ? 0 : (squaredLengths.y >= squaredLengths.z ? 1 : 2);
+    int first = longestEdge(p);
     dvec2 a = p[first];
     dvec2 b = p[(first + 1) % 3];
     dvec2 c = p[(first + 2) % 3];
@@ -80,22 +171,29 @@ void emitDilated(dvec2 p[3]) {
     emit(b + extension + high);
     EndPrimitive();
 }
+#endif
+
+// The anchor of edges behind the eye, which constrain nothing: in no column, but near enough for the depth
+// plane to be anchored there.
+const double kNowhere = -2.0lf;
+
+// Relative to their distances from the eye; flatter triangles are edge-on.
+const double kEyeFlatness = 1.0e-14lf;
 
 // A perspective triangle that reaches behind the eye cut: the rectangle around its visible part.
 // h: (column x * depth, column y * depth, depth) of the vertices.
 void emitCut(dvec3 h[3], double cutDepth) {
     double orientation = dot(h[0], cross(h[1], h[2]));
-    if (orientation == 0.0lf)
+    triangle.isEdgeOn = abs(orientation) <= kEyeFlatness * length(h[0]) * length(h[1]) * length(h[2]);
+    if (orientation == 0.0lf && LAMINA_COVERAGE != LAMINA_COVERAGE_CONSERVATIVE)
         return;
-    dvec2 size = dvec2(laminaDraw.size.xy);
-    dvec2 low = size;
+    dvec2 low = dvec2(laminaDraw.size.xy);
     dvec2 high = dvec2(0.0lf);
-    double anchorDepth = 0.0lf;
     for (int i = 0; i < 3; ++i) {
         dvec3 a = h[i];
         dvec3 b = h[(i + 1) % 3];
         if (a.z < cutDepth && b.z < cutDepth) {
-            triangle.edges[i] = dvec4(0.0lf);
+            triangle.edges[i] = dvec4(kNowhere, kNowhere, 0.0lf, 0.0lf);
             continue;
         }
         // From the end in front to the end behind, for both triangles of the edge.
@@ -108,18 +206,15 @@ void emitCut(dvec3 h[3], double cutDepth) {
         }
         dvec2 pa = a.xy / a.z;
         dvec2 pb = b.xy / b.z;
-        triangle.edges[i] = laminaOrientedEdge(pa, pb, orientation);
+        laminaSetEdge(i, pa, pb, 1.0lf / dvec2(a.z, b.z), orientation, triangle);
         low = min(low, min(pa, pb));
         high = max(high, max(pa, pb));
     }
     // 1/depth = dot(normal, (column x, column y, 1)).
     dvec3 normal = (cross(h[0], h[1]) + cross(h[1], h[2]) + cross(h[2], h[0])) / orientation;
     triangle.depthPlane = dvec3(normal.xy, dot(normal, dvec3(triangle.edges[0].xy, 1.0lf)));
-    double margin = double(laminaDraw.dilation.x);
-    low = clamp(low - margin, dvec2(0.0lf), size);
-    high = clamp(high + margin, dvec2(0.0lf), size);
-    if (low.x < high.x && low.y < high.y)
-        emitRectangle(low, high);
+    double margin = dilationRadius(0.0lf);
+    emitClampedRectangle(low - margin, high + margin);
 }
 
 void main() {
@@ -147,9 +242,10 @@ void main() {
     }
     dvec2 low = min(p[0], min(p[1], p[2]));
     dvec2 high = max(p[0], max(p[1], p[2]));
-    if (any(greaterThan(low, dvec2(laminaDraw.size.xy))) || any(lessThan(high, dvec2(0.0lf))))
+    double margin = double(kLaminaFootprintAllowance);
+    if (any(greaterThan(low, dvec2(laminaDraw.size.xy) + margin)) || any(lessThan(high, dvec2(-margin))))
         return;
-    if (!laminaSetUpTriangle(p, values, triangle))
-        return;
-    emitDilated(p);
+    bool ownsPoints = laminaSetUpTriangle(p, values, triangle);
+    if (ownsPoints || LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE)
+        emitCover(p, low, high);
 }

@@ -40,17 +40,21 @@ std::uint32_t maxOverlapSlices(const gl::DeviceState& device) {
         std::uint64_t{device.limits.maxTextureBufferTexels} * BitGrid::kSlicesPerGroup, 1u << 24u));
 }
 
+bool isOverlapGrid(const GridTransform& transform) {
+    return transform.projection() == Projection::Orthographic &&
+           transform.distribution().kind() == SliceDistribution::Kind::Linear;
+}
+
 Result<std::vector<GridPart>> gridParts(const gl::DeviceState& device,
                                         const GridTransform& transform) {
-    if (transform.projection() != Projection::Orthographic ||
-        transform.distribution().kind() != SliceDistribution::Kind::Linear)
+    if (!isOverlapGrid(transform))
         return Error{ErrorCode::Unsupported,
                      "voxelize: overlap expected an orthographic grid with linear slices, found " +
                          transform.describe() +
                          (transform.projection() == Projection::Orthographic
                               ? " with logarithmic or custom slices"
                               : "") +
-                         "; use Backend::Slicemap with Coverage::Filled"};
+                         "; use Backend::Automatic with Coverage::Conservative or Coverage::Solid"};
     const glm::uvec3 size = transform.size();
     if (size.x > maxOverlapColumns(device) || size.y > maxOverlapColumns(device) ||
         size.z > maxOverlapSlices(device))

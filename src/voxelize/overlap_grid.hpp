@@ -23,6 +23,9 @@ struct GridPart {
 /// Slices of a part at most: bounds the loops of one invocation.
 inline constexpr std::uint32_t kOverlapSlicesPerPart = 16384;
 
+/// Does the backend take grids of this projection and distribution?
+[[nodiscard]] bool isOverlapGrid(const GridTransform& transform);
+
 /// The parts of a grid, few and in order.
 /// Errors: Unsupported (perspective, or slices that are not linear), DeviceLimit.
 [[nodiscard]] Result<std::vector<GridPart>> gridParts(const gl::DeviceState& device,

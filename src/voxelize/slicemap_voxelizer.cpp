@@ -3,13 +3,16 @@
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 #include "grid/grid_constants.hpp"
+#include "voxelize/column_parity.hpp"
 #include "voxelize/mesh_view.hpp"
+#include "voxelize/volume_state.hpp"
 
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 namespace lamina {
@@ -22,11 +25,42 @@ struct PreparedSource {
     std::uint32_t materialId = 0;
 };
 
+std::string coverageDefine(Coverage coverage) {
+    switch (coverage) {
+    case Coverage::Filled:
+        return "LAMINA_COVERAGE_FILLED";
+    case Coverage::Conservative:
+        return "LAMINA_COVERAGE_CONSERVATIVE";
+    case Coverage::Solid:
+        return "LAMINA_COVERAGE_SOLID";
+    case Coverage::Sampled:
+    case Coverage::Separating6:
+        break;
+    }
+    return "LAMINA_COVERAGE_SAMPLED";
+}
+
+/// The depths of the triangles that matter to the pass of slices [first, end).
+glm::dvec4 passDepths(const GridTransform& transform, std::uint32_t first, std::uint32_t end,
+                      Coverage coverage) {
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+    const double allowance = (transform.farDepth() - transform.nearDepth()) * 0x1p-20;
+    double low = transform.depthAtSlice(first) - allowance;
+    double high = transform.depthAtSlice(end) + allowance;
+    if (coverage == Coverage::Solid) {
+        // A crossing toggles all slices before it. The first pass counts those before the grid too.
+        low = first == 0 ? -kUnbounded : low;
+        high = kUnbounded;
+    }
+    return {low, high, 0.0, 0.0};
+}
+
 class SlicemapVoxelizer final : public Voxelizer {
 public:
     SlicemapVoxelizer(std::shared_ptr<gl::DeviceState> device, Coverage coverage)
         : mDevice(std::move(device))
         , mCoverage(coverage)
+        , mColumnParity(mDevice)
         , mFramebuffer(gl::Framebuffer::create(mDevice, "lamina slicemap"))
         , mVertexArray(gl::VertexArray::create(mDevice, "lamina mesh view"))
         , mDrawBlocks(gl::Buffer::create(mDevice, "lamina draw constants")) {
@@ -61,16 +95,18 @@ public:
         return program({GL_VERTEX_SHADER, "voxelize/mesh.vert"});
     }
 
+    [[nodiscard]] Result<SolidReport> downloadSolidReport() const override {
+        return isSolid() ? mColumnParity.download() : Voxelizer::downloadSolidReport();
+    }
+
 private:
+    [[nodiscard]] bool isSolid() const { return mCoverage == Coverage::Solid; }
     [[nodiscard]] Result<GLuint> program(gl::ProgramStage vertexStage) const {
-        return gl::findOrBuildProgram(
-            *mDevice,
-            {"lamina slicemap",
-             {std::move(vertexStage),
-              {GL_GEOMETRY_SHADER, "voxelize/slicemap.geom"},
-              {GL_FRAGMENT_SHADER, "voxelize/slicemap.frag"}},
-             {{"LAMINA_COVERAGE", mCoverage == Coverage::Sampled ? "LAMINA_COVERAGE_SAMPLED"
-                                                                 : "LAMINA_COVERAGE_FILLED"}}});
+        return gl::findOrBuildProgram(*mDevice, {"lamina slicemap",
+                                                 {std::move(vertexStage),
+                                                  {GL_GEOMETRY_SHADER, "voxelize/slicemap.geom"},
+                                                  {GL_FRAGMENT_SHADER, "voxelize/slicemap.frag"}},
+                                                 {{"LAMINA_COVERAGE", coverageDefine(mCoverage)}}});
     }
 
     [[nodiscard]] Result<std::vector<PreparedSource>>
@@ -83,6 +119,7 @@ private:
 
     std::shared_ptr<gl::DeviceState> mDevice;
     Coverage mCoverage;
+    ColumnParity mColumnParity;
     gl::Framebuffer mFramebuffer;
     gl::VertexArray mVertexArray;
     gl::Buffer mDrawBlocks;
@@ -142,9 +179,7 @@ void SlicemapVoxelizer::uploadDrawBlocks(std::span<const PreparedSource> sources
         const std::uint32_t firstSlice = pass * BitGrid::kSlicesPerGroup;
         const std::uint32_t endSlice =
             std::min(firstSlice + BitGrid::kSlicesPerGroup, transform.size().z);
-        const double allowance = (far - near) * 0x1p-20;
-        block.passDepths = {transform.depthAtSlice(firstSlice) - allowance,
-                            transform.depthAtSlice(endSlice) + allowance, 0.0, 0.0};
+        block.passDepths = passDepths(transform, firstSlice, endSlice, mCoverage);
         for (const PreparedSource& source : sources) {
             const glm::dmat4 rows = glm::transpose(source.localToColumn);
             for (int row = 0; row < 3; ++row)
@@ -200,6 +235,9 @@ Result<VoxelizeStats> SlicemapVoxelizer::voxelize(std::span<const GeometrySource
     auto prepared = prepare(sources, transform, stats);
     if (!prepared)
         return prepared.error();
+    if (isSolid())
+        if (auto reserved = mColumnParity.reserve(size); !reserved)
+            return reserved.error();
     if (auto resized = out.resize(transform, VoxelStore::Texture); !resized)
         return resized.error();
 
@@ -207,12 +245,15 @@ Result<VoxelizeStats> SlicemapVoxelizer::voxelize(std::span<const GeometrySource
         (size.z + BitGrid::kSlicesPerGroup - 1) / BitGrid::kSlicesPerGroup;
     const GladGLContext& gl = mDevice->gl;
     gl::RasterStateGuard guard(*mDevice, 2);
+    const ImageUnitGuard imageGuard(*mDevice, isSolid() ? 1 : 0);
+    if (isSolid())
+        mColumnParity.begin();
     uploadDrawBlocks(*prepared, transform, passCount);
     const GLuint gridBlock = out.uniformBuffer();
     gl.BindBuffersBase(GL_UNIFORM_BUFFER, LAMINA_PASS_GRID_BLOCK_BINDING, 1, &gridBlock);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, mFramebuffer.id());
     gl.ViewportIndexedf(0, 0.0f, 0.0f, static_cast<float>(size.x), static_cast<float>(size.y));
-    gl.LogicOp(GL_OR);
+    gl.LogicOp(isSolid() ? GL_XOR : GL_OR);
     for (std::uint32_t pass = 0; pass < passCount; ++pass) {
         gl.NamedFramebufferTextureLayer(mFramebuffer.id(), GL_COLOR_ATTACHMENT0, out.texture(), 0,
                                         static_cast<GLint>(pass));
@@ -226,6 +267,8 @@ Result<VoxelizeStats> SlicemapVoxelizer::voxelize(std::span<const GeometrySource
         drawPass(sources, *prepared, context, guard);
     }
     gl.NamedFramebufferTexture(mFramebuffer.id(), GL_COLOR_ATTACHMENT0, 0, 0);
+    if (isSolid())
+        mColumnParity.end();
     stats.passes = passCount;
     stats.gridBytes = out.gpuBytes();
     return stats;

@@ -1,3 +1,4 @@
+#include "voxelize/automatic_voxelizer.hpp"
 #include "voxelize/overlap_voxelizer.hpp"
 #include "voxelize/slicemap_voxelizer.hpp"
 
@@ -37,25 +38,24 @@ std::string_view name(Backend backend) {
 
 namespace {
 
-/// The backend that serves a coverage, and why it and no other.
-struct Choice {
-    Backend backend;
-    std::string_view why;
-};
-
-Choice choose(Coverage coverage) {
+bool serves(Backend backend, Coverage coverage) {
     switch (coverage) {
     case Coverage::Sampled:
     case Coverage::Filled:
-        return {Backend::Slicemap,
-                "it decides per column centre, for every projection and slice distribution"};
+        return backend == Backend::Slicemap;
     case Coverage::Conservative:
-    case Coverage::Separating6:
-        return {Backend::Overlap, "it tests triangles against voxels exactly"};
     case Coverage::Solid:
+        return backend == Backend::Slicemap || backend == Backend::Overlap;
+    case Coverage::Separating6:
         break;
     }
-    return {Backend::Overlap, "it counts crossings exactly, in one pass of the geometry"};
+    return backend == Backend::Overlap;
+}
+
+Result<std::unique_ptr<Voxelizer>> createBackend(const Device& device, const VoxelizerDesc& desc,
+                                                 Backend backend) {
+    return backend == Backend::Overlap ? createOverlapVoxelizer(device, desc)
+                                       : createSlicemapVoxelizer(device, desc);
 }
 
 } // namespace
@@ -66,27 +66,38 @@ Result<SolidReport> Voxelizer::downloadSolidReport() const {
                  "none; voxelize with Coverage::Solid first"};
 }
 
+void Voxelizer::setReason(gl::DeviceState& device, std::string reason) {
+    mReason = std::move(reason);
+    device.say(MessageSeverity::Info, "voxelizer: " + mReason);
+}
+
 Result<std::unique_ptr<Voxelizer>> Voxelizer::create(const Device& device,
                                                      const VoxelizerDesc& desc) {
-    const Choice choice = choose(desc.coverage);
     const std::string coverage(name(desc.coverage));
-    const std::string chosen(name(choice.backend));
-    if (desc.backend != Backend::Automatic && desc.backend != choice.backend)
+    const std::string asked(name(desc.backend));
+    const Backend only =
+        serves(Backend::Slicemap, desc.coverage) ? Backend::Slicemap : Backend::Overlap;
+    if (desc.backend == Backend::Automatic) {
+        if (serves(Backend::Slicemap, desc.coverage) && serves(Backend::Overlap, desc.coverage))
+            return createAutomaticVoxelizer(device, desc);
+        auto created = createBackend(device, desc, only);
+        if (created)
+            (*created)->setReason(
+                *device.state(),
+                std::string(name(only)) + " serves " + coverage + " coverage: it " +
+                    (only == Backend::Slicemap
+                         ? "decides per column centre, for every projection and slice distribution"
+                         : "tests triangles against voxels exactly"));
+        return created;
+    }
+    if (!serves(desc.backend, desc.coverage))
         return Error{ErrorCode::Unsupported,
                      "voxelizer: expected a backend that serves " + coverage + " coverage, found " +
-                         std::string(name(desc.backend)) + "; use Backend::Automatic or " + chosen +
-                         ", or coverage " +
-                         (desc.backend == Backend::Overlap ? "conservative" : "filled") +
-                         ", the nearest that " + std::string(name(desc.backend)) + " serves"};
-    auto created = choice.backend == Backend::Overlap ? createOverlapVoxelizer(device, desc)
-                                                      : createSlicemapVoxelizer(device, desc);
-    if (!created)
-        return created;
-    std::string& reason = (*created)->mReason;
-    reason = desc.backend == Backend::Automatic
-                 ? chosen + " serves " + coverage + " coverage: " + std::string(choice.why)
-                 : chosen + " was asked for";
-    device.state()->say(MessageSeverity::Info, "voxelizer: " + reason);
+                         asked + "; use Backend::Automatic or " + std::string(name(only)) +
+                         ", or coverage conservative, the nearest that " + asked + " serves"};
+    auto created = createBackend(device, desc, desc.backend);
+    if (created)
+        (*created)->setReason(*device.state(), asked + " was asked for");
     return created;
 }
 

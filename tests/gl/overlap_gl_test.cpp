@@ -2,14 +2,13 @@
 // references.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/grids.hpp"
 #include "gl/support/test_meshes.hpp"
 #include "gl/support/voxelize.hpp"
 
 #include <reference/crossings.hpp>
 #include <reference/overlap.hpp>
 #include <reference/shapes.hpp>
-
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <array>
 #include <cmath>
@@ -53,19 +52,6 @@ protected:
     }
 };
 
-GridTransform cameraGrid(const glm::uvec3& size) {
-    GridCamera camera;
-    camera.worldToEye =
-        glm::lookAt(glm::dvec3(1.1, 1.7, 2.3), glm::dvec3(0.1, 0.0, -0.1), glm::dvec3(0.1, 1, 0));
-    camera.left = -1.4;
-    camera.right = 1.5;
-    camera.bottom = -1.3;
-    camera.top = 1.4;
-    camera.near = 1.2;
-    camera.far = 4.9;
-    return GridTransform::camera(camera, size).value();
-}
-
 TEST_F(OverlapGlTest, ShapesAgreeWithTheReferenceAlongEveryAxis) {
     const Box3 box{{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}};
     for (const Axis axis : {Axis::X, Axis::Y, Axis::Z})
@@ -84,7 +70,8 @@ TEST_F(OverlapGlTest, ShapesOfLargeTrianglesAgreeWithTheReference) {
 
 TEST_F(OverlapGlTest, CameraGridsAgreeWithTheReference) {
     for (const NamedMesh& shape : test::makeShapes())
-        expectOverlap(shape.mesh, cameraGrid({90, 71, 100}), shape.name);
+        expectOverlap(shape.mesh, test::cameraGrid(Projection::Orthographic, {90, 71, 100}),
+                      shape.name);
 }
 
 TEST_F(OverlapGlTest, RealMeshesAgreeWithTheReference) {

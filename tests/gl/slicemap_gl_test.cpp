@@ -1,6 +1,7 @@
 // The slicemap backend against the double-precision references.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/grids.hpp"
 #include "gl/support/test_meshes.hpp"
 
 #include <lamina/voxelize/voxelizer.hpp>
@@ -10,8 +11,6 @@
 #include <reference/sampled.hpp>
 #include <reference/shapes.hpp>
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include <cmath>
 
 namespace lamina {
@@ -20,21 +19,6 @@ namespace {
 namespace ref = reference;
 using test::makeShapes;
 using test::NamedMesh;
-
-GridTransform cameraGrid(Projection projection, const glm::uvec3& size,
-                         const SliceDistribution& distribution = SliceDistribution::linear()) {
-    const glm::dmat4 view = glm::lookAt(glm::dvec3(1.1, 1.7, 2.3), glm::dvec3(0.1, 0.0, -0.1),
-                                        glm::dvec3(0.1, 1.0, 0.0));
-    GridCamera camera = GridCamera::perspective(view, 0.9, double(size.x) / size.y, 1.2, 4.9);
-    if (projection == Projection::Orthographic) {
-        camera.projection = projection;
-        camera.left = -1.4;
-        camera.right = 1.5;
-        camera.bottom = -1.3;
-        camera.top = 1.4;
-    }
-    return GridTransform::camera(camera, size, distribution).value();
-}
 
 class SlicemapGlTest : public test::GlTest {
 protected:
@@ -163,34 +147,20 @@ TEST_F(SlicemapGlTest, RealMeshesAgreeWithTheReference) {
 }
 
 TEST_F(SlicemapGlTest, CameraGridsAndSliceDistributionsAgreeWithTheReference) {
-    std::vector<float> boundaries(101);
-    for (std::size_t k = 0; k < boundaries.size(); ++k)
-        boundaries[k] = std::pow(static_cast<float>(k) / 100.0f, 1.7f);
-    const SliceDistribution distributions[] = {SliceDistribution::linear(),
-                                               SliceDistribution::logarithmic(),
-                                               SliceDistribution::custom(boundaries)};
-    for (const Projection projection : {Projection::Orthographic, Projection::Perspective})
-        for (const SliceDistribution& distribution : distributions) {
-            const GridTransform transform = cameraGrid(projection, {90, 71, 100}, distribution);
-            for (const NamedMesh& shape : makeShapes()) {
-                const std::string name = shape.name + ", " + transform.describe() +
-                                         ", distribution " +
-                                         std::to_string(static_cast<int>(distribution.kind()));
-                expectSampled(voxelize(Coverage::Sampled, shape.mesh, transform), shape.mesh,
-                              transform, name);
-                expectFilled(voxelize(Coverage::Filled, shape.mesh, transform), shape.mesh,
-                             transform, name);
-            }
+    for (const GridTransform& transform : test::makeCameraGrids({90, 71, 100}))
+        for (const NamedMesh& shape : makeShapes()) {
+            const std::string name =
+                shape.name + ", " + transform.describe() + ", distribution " +
+                std::to_string(static_cast<int>(transform.distribution().kind()));
+            expectSampled(voxelize(Coverage::Sampled, shape.mesh, transform), shape.mesh, transform,
+                          name);
+            expectFilled(voxelize(Coverage::Filled, shape.mesh, transform), shape.mesh, transform,
+                         name);
         }
 }
 
 TEST_F(SlicemapGlTest, TrianglesAroundTheEyeAgreeWithTheReference) {
-    // The camera stands inside the mesh: triangles cross the near plane and the eye's plane.
-    const glm::dmat4 view =
-        glm::lookAt(glm::dvec3(0.05, 0.1, 0.2), glm::dvec3(0.7, 0.2, -0.4), glm::dvec3(0, 1, 0));
-    const GridTransform transform =
-        GridTransform::camera(GridCamera::perspective(view, 1.3, 1.0, 0.1, 3.0), {80, 80, 96})
-            .value();
+    const GridTransform transform = test::eyeGrid({80, 80, 96});
     for (const NamedMesh& shape : makeShapes()) {
         const BitGrid may = ref::filled(shape.mesh, transform, {.grow = 1e-4}).value();
         if (may.count() == 0)

@@ -1,17 +1,15 @@
 // Coverage::Solid against ray parity in double precision.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/solid.hpp"
 #include "gl/support/test_meshes.hpp"
 #include "gl/support/voxelize.hpp"
 
-#include <reference/column_triangle.hpp>
 #include <reference/crossings.hpp>
 #include <reference/mesh_measures.hpp>
 #include <reference/shapes.hpp>
 
 #include <gmock/gmock.h>
-
-#include <cmath>
 
 namespace lamina {
 namespace {
@@ -37,53 +35,7 @@ protected:
         EXPECT_TRUE(stats) << stats.error().text;
         return {grid.download().value(), voxelizer->downloadSolidReport().value()};
     }
-
-    /// At most one voxel in 100,000 differs, each by rounding.
-    void expectInside(const BitGrid& found, const TriangleMesh& mesh,
-                      const GridTransform& transform, const std::string& name);
 };
-
-/// Does a triangle's edge pass within `tolerance` columns of the voxel's column centre, or a
-/// crossing within `tolerance` slices of the voxel's centre?
-bool isRounding(const std::vector<ref::ColumnTriangle>& triangles, const GridTransform& transform,
-                const glm::uvec3& voxel, double tolerance) {
-    const glm::dvec2 center = glm::dvec2(voxel.x, voxel.y) + 0.5;
-    for (const ref::ColumnTriangle& triangle : triangles) {
-        const glm::dvec2 low = triangle.min() - tolerance;
-        const glm::dvec2 high = triangle.max() + tolerance;
-        if (center.x < low.x || center.y < low.y || center.x > high.x || center.y > high.y)
-            continue;
-        if (ref::outlineDistance(triangle, center) <= tolerance)
-            return true;
-        const double slice = transform.sliceCoordinate(ref::depthAt(triangle, center));
-        if (ref::owns(triangle, center) && std::abs(slice - (voxel.z + 0.5)) <= tolerance)
-            return true;
-    }
-    return false;
-}
-
-void SolidGlTest::expectInside(const BitGrid& found, const TriangleMesh& mesh,
-                               const GridTransform& transform, const std::string& name) {
-    const BitGrid expected = ref::inside(mesh, transform).value();
-    const BitGridComparison comparison = compare(found, expected).value();
-    const std::uint64_t differing = comparison.onlyFirst + comparison.onlySecond;
-    ASSERT_LE(differing * 100000, expected.count())
-        << name << ": " << differing << " voxels differ";
-    EXPECT_GT(expected.count(), 0u) << name;
-    if (differing == 0)
-        return;
-    const auto triangles = ref::columnTriangles(mesh, transform, glm::dmat4(1.0));
-    const auto expectRounding = [&](const BitGrid& set, const BitGrid& clear) {
-        set.forEachSet([&](const glm::uvec3& voxel) {
-            if (!clear.test(voxel)) {
-                EXPECT_TRUE(isRounding(triangles, transform, voxel, 1e-9))
-                    << name << ": voxel " << voxel.x << ", " << voxel.y << ", " << voxel.z;
-            }
-        });
-    };
-    expectRounding(found, expected);
-    expectRounding(expected, found);
-}
 
 TEST_F(SolidGlTest, ClosedShapesEqualRayParityAndHaveNoOddColumns) {
     const Box3 box{{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}};
@@ -93,7 +45,7 @@ TEST_F(SolidGlTest, ClosedShapesEqualRayParityAndHaveNoOddColumns) {
         for (const glm::uvec3 size : {glm::uvec3{101, 83, 128}, {300, 280, 290}}) {
             const GridTransform transform = GridTransform::box(box, size).value();
             const Solid solid = voxelize(shape.mesh, transform);
-            expectInside(solid.bits, shape.mesh, transform, shape.name);
+            test::expectInside(solid.bits, shape.mesh, transform, shape.name);
             EXPECT_EQ(solid.report.oddColumns, 0u) << shape.name;
         }
     }
@@ -105,7 +57,7 @@ TEST_F(SolidGlTest, OrientationAndOverlapFollowParity) {
     const BitGrid outward = voxelize(ball, transform).bits;
     EXPECT_TRUE(compare(voxelize(ref::flipped(ball), transform).bits, outward)->equal());
     const TriangleMesh both = ref::merged(ball, ref::makeCube({-0.2f, 0.1f, 0.1f}, 0.9f));
-    expectInside(voxelize(both, transform).bits, both, transform, "overlapping");
+    test::expectInside(voxelize(both, transform).bits, both, transform, "overlapping");
 }
 
 TEST_F(SolidGlTest, ABallHasItsVolume) {
@@ -124,7 +76,7 @@ TEST_F(SolidGlTest, CutOffSolidsKeepTheirInside) {
         const GridTransform transform =
             GridTransform::box({{-0.5, -0.4, -0.1}, {0.45, 0.6, 0.15}}, {77, 66, 55}, axis).value();
         const Solid solid = voxelize(knot, transform);
-        expectInside(solid.bits, knot, transform, "knot");
+        test::expectInside(solid.bits, knot, transform, "knot");
         EXPECT_EQ(solid.report.oddColumns, 0u);
     }
 }
@@ -166,7 +118,8 @@ TEST_F(SolidGlTest, RealMeshesEqualRayParity) {
             const GridTransform transform =
                 GridTransform::box(mesh.mesh.bounds(), glm::uvec3(size)).value();
             const Solid solid = voxelize(mesh.mesh, transform);
-            expectInside(solid.bits, mesh.mesh, transform, mesh.name + " " + std::to_string(size));
+            test::expectInside(solid.bits, mesh.mesh, transform,
+                               mesh.name + " " + std::to_string(size));
             if (ref::isWatertight(mesh.mesh)) {
                 EXPECT_EQ(solid.report.oddColumns, 0u) << mesh.name;
             }

@@ -21,11 +21,11 @@ enum class Coverage : std::uint8_t {
     /// triangle covers ([ED06] 2.2). Steep triangles leave holes along the depth.
     Sampled,
     /// For each column whose centre the triangle covers, every slice that the part of the triangle
-    /// inside the column spans. No holes along the depth.
+    /// inside the column spans. No holes along the depth. A triangle seen edge-on covers no centre,
+    /// not even one that it passes through, and sets nothing; Conservative sees it.
     Filled,
-    /// Every voxel whose closed cube the triangle touches: nothing is missed. A face on the
-    /// boundary
-    /// of two voxels sets both.
+    /// Every voxel that the triangle touches, its boundary included: nothing is missed. A face on
+    /// the boundary of two voxels sets both. Triangles of no area, down to points, count.
     Conservative,
     /// Thin and gap-free [Schwarz & Seidel 2010]: every voxel whose crosshair, the segments through
     /// its centre along the axes and what they span, the triangle touches. A 6-connected path
@@ -33,15 +33,22 @@ enum class Coverage : std::uint8_t {
     /// the surface meets a set voxel. Subset of Conservative.
     Separating6,
     /// Every voxel whose centre lies inside: an odd number of triangles crosses the column's centre
-    /// line beyond it. For closed meshes of any orientation; see downloadSolidReport().
+    /// line beyond it. For closed meshes of any orientation; see downloadSolidReport(). All the
+    /// sources together are one mesh.
     Solid,
 };
 
 /// How voxels are made.
 enum class Backend : std::uint8_t {
-    Automatic, ///< Picks by what is asked and what the device can do.
-    Slicemap,  ///< Bits by logic op, one pass of the geometry per 128 slices ([ED06] 2.1-2.3).
-    Overlap,   ///< Exact triangle/voxel overlap by compute shaders; orthographic, linear slices.
+    /// Sampled, Filled: Slicemap; Separating6: Overlap; Conservative, Solid: Overlap in the grids
+    /// that it takes, else Slicemap, call by call.
+    Automatic,
+    /// Bits by logic op, one pass of the geometry per 128 slices ([ED06] 2.1-2.3). Any grid; all
+    /// coverages but Separating6. Solid by XOR (Eisemann and Decoret 2008).
+    Slicemap,
+    /// Exact triangle/voxel overlap by compute shaders. Orthographic grids with linear slices;
+    /// Conservative, Separating6 and Solid.
+    Overlap,
 };
 
 [[nodiscard]] LAMINA_API std::string_view name(Coverage coverage); ///< "sampled"
@@ -66,7 +73,9 @@ struct VoxelizerCapabilities {
 /// How far Coverage::Solid could tell inside from outside.
 struct SolidReport {
     /// Columns whose centre line an odd number of triangles crosses. There the mesh is not closed,
-    /// and the column is filled up to the nearest crossing without a partner. 0 for closed meshes.
+    /// and the column is filled up to the nearest crossing without a partner. 0 for closed meshes,
+    /// except in a perspective grid: the eye is then the end of the centre lines, and those are odd
+    /// that leave a mesh in which it stands, rightly filled.
     std::uint64_t oddColumns = 0;
 };
 
@@ -82,7 +91,8 @@ struct VoxelizeStats {
 ///
 /// Coverage is decided by exact edge and plane equations in double precision, not by the
 /// rasterizer's snapped coordinates: all devices give the same voxels. Triangles with non-finite or
-/// zero-area projections set none. See Device for threads, lifetime and GL state.
+/// zero-area projections set none, except that Conservative and Separating6 see the latter. See
+/// Device for threads, lifetime and GL state.
 class LAMINA_API Voxelizer {
 public:
     /// Errors: Unsupported (no backend serves `desc` here), ShaderError.
@@ -93,10 +103,12 @@ public:
     Voxelizer(const Voxelizer&) = delete;
     Voxelizer& operator=(const Voxelizer&) = delete;
 
-    /// The backend in use; never Automatic.
+    /// The backend in use; never Automatic. Where Backend::Automatic picks call by call, the one of
+    /// the last voxelize() that succeeded, Overlap at first.
     [[nodiscard]] virtual Backend backend() const = 0;
+    /// Of the backend in use; `perspective` and `anyDistribution` hold for all of Automatic.
     [[nodiscard]] virtual VoxelizerCapabilities capabilities() const = 0;
-    /// Why this backend, in a sentence.
+    /// Why the backend in use, in a sentence.
     [[nodiscard]] const std::string& reason() const { return mReason; }
 
     /// Voxelizes all `sources` into `out`, which takes the place of `transform`; what it held is
@@ -117,6 +129,8 @@ public:
 
 protected:
     Voxelizer() = default;
+    /// Also tells the device's message callback.
+    void setReason(gl::DeviceState& device, std::string reason);
 
 private:
     std::string mReason;

@@ -33,4 +33,7 @@
 #define LAMINA_DRAW_BLOCK_BINDING 0
 #define LAMINA_PASS_GRID_BLOCK_BINDING 1
 
+// Image unit of the parity of each column's crossings, a bit each.
+#define LAMINA_COLUMN_PARITY_IMAGE 0
+
 #endif
