@@ -54,7 +54,7 @@ Result<std::vector<GridPart>> gridParts(const gl::DeviceState& device,
                          (transform.projection() == Projection::Orthographic
                               ? " with logarithmic or custom slices"
                               : "") +
-                         "; use Backend::Automatic with Coverage::Conservative or Coverage::Solid"};
+                         "; use Backend::Slicemap with Coverage::Conservative or Coverage::Solid"};
     const glm::uvec3 size = transform.size();
     if (size.x > maxOverlapColumns(device) || size.y > maxOverlapColumns(device) ||
         size.z > maxOverlapSlices(device))

@@ -56,20 +56,23 @@ TEST_F(StateGlTest, DeviceCreationChangesNothing) {
 }
 
 TEST_F(StateGlTest, EveryCallOfAVoxelizationRestoresTheState) {
-    for (const Coverage coverage : {Coverage::Sampled, Coverage::Filled, Coverage::Conservative,
-                                    Coverage::Separating6, Coverage::Solid}) {
+    const VoxelizerDesc descs[] = {
+        {.coverage = Coverage::Sampled},      {.coverage = Coverage::Filled},
+        {.coverage = Coverage::Conservative}, {.coverage = Coverage::Separating6},
+        {.coverage = Coverage::Solid},        {Backend::Slicemap, Coverage::Conservative},
+        {Backend::Slicemap, Coverage::Solid}};
+    for (const VoxelizerDesc& desc : descs) {
+        const Coverage coverage = desc.coverage;
         // The expected voxels, made in the default state.
-        const BitGrid expected =
-            test::voxelize(device(), {.coverage = coverage}, kBox, unitGrid(200));
+        const BitGrid expected = test::voxelize(device(), desc, kBox, unitGrid(200));
         ASSERT_GT(expected.count(), 0u);
         const OddGlState odd(gl());
         std::optional<MeshBuffers> buffers;
         expectUnchanged("MeshBuffers::upload",
                         [&] { buffers.emplace(MeshBuffers::upload(device(), kBox).value()); });
         std::unique_ptr<Voxelizer> voxelizer;
-        expectUnchanged("Voxelizer::create", [&] {
-            voxelizer = Voxelizer::create(device(), {.coverage = coverage}).value();
-        });
+        expectUnchanged("Voxelizer::create",
+                        [&] { voxelizer = Voxelizer::create(device(), desc).value(); });
         std::optional<VoxelGrid> grid;
         expectUnchanged("VoxelGrid::create",
                         [&] { grid.emplace(VoxelGrid::create(device()).value()); });

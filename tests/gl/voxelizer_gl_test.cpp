@@ -440,16 +440,65 @@ TEST_F(VoxelizerGlTest, AutomaticPicksByCoverageAndSaysWhy) {
                           HasSubstr(std::string(name(coverage))), HasSubstr(": it ")));
         const auto asked = Voxelizer::create(device(), {backend, coverage}).value();
         EXPECT_THAT(asked->reason(), HasSubstr("was asked for"));
-        const Backend other = backend == Backend::Slicemap ? Backend::Overlap : Backend::Slicemap;
-        const auto refused = Voxelizer::create(device(), {other, coverage});
+    }
+}
+
+TEST_F(VoxelizerGlTest, BackendsThatDoNotServeACoverageAreRefused) {
+    const std::pair<Coverage, Backend> refusals[] = {{Coverage::Sampled, Backend::Overlap},
+                                                     {Coverage::Filled, Backend::Overlap},
+                                                     {Coverage::Separating6, Backend::Slicemap}};
+    for (const auto& [coverage, backend] : refusals) {
+        const Backend able = backend == Backend::Slicemap ? Backend::Overlap : Backend::Slicemap;
+        const auto refused = Voxelizer::create(device(), {backend, coverage});
         ASSERT_FALSE(refused);
         EXPECT_EQ(refused.error().code, ErrorCode::Unsupported);
         EXPECT_THAT(refused.error().text,
                     AllOf(HasSubstr("serves " + std::string(name(coverage)) + " coverage, found " +
-                                    std::string(name(other))),
-                          HasSubstr("Backend::Automatic or " + std::string(name(backend))),
-                          HasSubstr(other == Backend::Overlap ? "coverage conservative"
-                                                              : "coverage filled")));
+                                    std::string(name(backend))),
+                          HasSubstr("Backend::Automatic or " + std::string(name(able))),
+                          HasSubstr("coverage conservative")));
+    }
+    for (const Coverage coverage : {Coverage::Conservative, Coverage::Solid})
+        for (const Backend backend : {Backend::Slicemap, Backend::Overlap})
+            EXPECT_EQ(Voxelizer::create(device(), {backend, coverage}).value()->backend(), backend);
+}
+
+TEST_F(VoxelizerGlTest, AutomaticPicksByTheGridWhereTwoBackendsServe) {
+    auto buffers = MeshBuffers::upload(device(), kKnot).value();
+    const GeometrySource source = buffers.view();
+    const Box3 box{{-1, -1, -1}, {1, 1, 1}};
+    const GridTransform linear = GridTransform::box(box, {32, 32, 32}).value();
+    const GridTransform custom =
+        GridTransform::box(box, {32, 32, 2}, Axis::Z, SliceDistribution::custom({0, 0.25f, 1}))
+            .value();
+    GridCamera eye = GridCamera::perspective(glm::dmat4(1), 1, 1, 1, 4);
+    eye.worldToEye = glm::translate(glm::dmat4(1), {0, 0, -2.5});
+    const GridTransform perspective = GridTransform::camera(eye, {32, 32, 32}).value();
+    for (const Coverage coverage : {Coverage::Conservative, Coverage::Solid}) {
+        auto voxelizer = Voxelizer::create(device(), {.coverage = coverage}).value();
+        EXPECT_TRUE(voxelizer->capabilities().perspective);
+        EXPECT_TRUE(voxelizer->capabilities().anyDistribution);
+        for (const auto& [grid, backend] : {std::pair{&linear, Backend::Overlap},
+                                            {&custom, Backend::Slicemap},
+                                            {&linear, Backend::Overlap},
+                                            {&perspective, Backend::Slicemap}}) {
+            ASSERT_TRUE(voxelizer->voxelize({&source, 1}, *grid, *mGrid));
+            EXPECT_EQ(voxelizer->backend(), backend);
+            EXPECT_EQ(voxelizer->capabilities().store, mGrid->store());
+            EXPECT_THAT(voxelizer->reason(), HasSubstr(std::string(name(backend)) + " serves"));
+            auto one = Voxelizer::create(device(), {backend, coverage}).value();
+            auto expected = VoxelGrid::create(device()).value();
+            ASSERT_TRUE(one->voxelize({&source, 1}, *grid, expected));
+            EXPECT_GT(mGrid->download()->count(), 0u);
+            EXPECT_TRUE(compare(mGrid->download().value(), expected.download().value())->equal());
+            if (coverage == Coverage::Solid) {
+                EXPECT_EQ(voxelizer->downloadSolidReport()->oddColumns, 0u);
+            }
+        }
+        // A call that fails leaves the choice as it is.
+        const GeometrySource broken = MeshView{};
+        EXPECT_FALSE(voxelizer->voxelize({&broken, 1}, linear, *mGrid));
+        EXPECT_EQ(voxelizer->backend(), Backend::Slicemap);
     }
 }
 
