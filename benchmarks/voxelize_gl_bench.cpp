@@ -7,8 +7,8 @@ namespace lamina::bench {
 namespace {
 
 Result<void> run(benchmark::State& state, const Device& device, const TriangleMesh& mesh,
-                 const GridTransform& transform, Coverage coverage) {
-    auto voxelizer = Voxelizer::create(device, {.coverage = coverage});
+                 const GridTransform& transform, const VoxelizerDesc& desc) {
+    auto voxelizer = Voxelizer::create(device, desc);
     if (!voxelizer)
         return voxelizer.error();
     auto buffers = MeshBuffers::upload(device, mesh);
@@ -39,7 +39,7 @@ Result<void> run(benchmark::State& state, const Device& device, const TriangleMe
 }
 
 void registerRun(const Device& device, const std::string& name, std::shared_ptr<NamedMesh> mesh,
-                 Coverage coverage,
+                 const VoxelizerDesc& desc,
                  std::function<Result<GridTransform>(const TriangleMesh&)> makeGrid) {
     registerGl(name, [=, &device](benchmark::State& state) -> Result<void> {
         auto loaded = mesh->get();
@@ -48,23 +48,23 @@ void registerRun(const Device& device, const std::string& name, std::shared_ptr<
         auto transform = makeGrid(**loaded);
         if (!transform)
             return transform.error();
-        return run(state, device, **loaded, *transform, coverage);
+        return run(state, device, **loaded, *transform, desc);
     });
 }
 
 } // namespace
 
 void registerVoxelizers(const Device& device, const Case& what) {
-    struct Row {
-        const char* name;
-        Coverage coverage;
-    };
-    for (const Row& row :
-         {Row{"slicemap filled", Coverage::Filled}, Row{"slicemap sampled", Coverage::Sampled},
-          Row{"overlap conservative", Coverage::Conservative},
-          Row{"overlap separating6", Coverage::Separating6}, Row{"overlap solid", Coverage::Solid}})
-        registerRun(device, what.describe() + "/lamina " + row.name, what.mesh, row.coverage,
-                    [resolution = what.resolution](const TriangleMesh& mesh) {
+    constexpr VoxelizerDesc kRows[] = {
+        {Backend::Slicemap, Coverage::Filled},       {Backend::Slicemap, Coverage::Sampled},
+        {Backend::Slicemap, Coverage::Conservative}, {Backend::Slicemap, Coverage::Solid},
+        {Backend::Overlap, Coverage::Conservative},  {Backend::Overlap, Coverage::Separating6},
+        {Backend::Overlap, Coverage::Solid}};
+    for (const VoxelizerDesc& row : kRows)
+        registerRun(device,
+                    what.describe() + "/lamina " + std::string(name(row.backend)) + " " +
+                        std::string(name(row.coverage)),
+                    what.mesh, row, [resolution = what.resolution](const TriangleMesh& mesh) {
                         return benchGrid(mesh, resolution);
                     });
 }
@@ -75,7 +75,8 @@ void registerSlicemapPasses(const Device& device, const std::shared_ptr<NamedMes
         registerRun(device,
                     mesh->name + "/512x512 columns/lamina slicemap filled, " +
                         std::to_string(slices) + " slices",
-                    mesh, Coverage::Filled, [slices](const TriangleMesh& loaded) {
+                    mesh, {Backend::Slicemap, Coverage::Filled},
+                    [slices](const TriangleMesh& loaded) {
                         return GridTransform::box(loaded.bounds(), {kColumns, kColumns, slices});
                     });
 }

@@ -60,8 +60,9 @@ void emitClampedRectangle(dvec2 low, dvec2 high) {
         emitRectangle(low, high);
 }
 
-// Columns between a centre and its fragments' squares, and what rasterization may lose. `farthest`: largest
-// coordinate; far outside the grid more is lost to the rounding of normalized device coordinates.
+// How far from the triangle the centres of its columns may lie: by coverage, and by what rasterization may
+// lose. farthest: largest coordinate; far outside the grid more is lost to the rounding of normalized device
+// coordinates.
 double dilationRadius(double farthest) {
     double rounding = double(laminaDraw.dilation.x) + farthest * 4.8e-7lf;
 #if LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
@@ -77,8 +78,8 @@ int longestEdge(dvec2 p[3]) {
 }
 
 #if LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
-// Triangles whose boxes hold fewer columns get their boxes: fewer corners than the hull, few idle fragments.
-const double kSmallBox = 16.0lf;
+// Triangles whose boxes hold fewer columns get their boxes: idle fragments cost less than the hull's corners.
+const double kSmallBox = 1024.0lf;
 
 // Narrower triangles get the hull of their longest edge.
 const double kNarrow = 1.0e-3lf;

@@ -175,6 +175,22 @@ TEST_F(SlicemapConservativeGlTest, LargeAndSmallTrianglesAndGridSizes) {
             expectTouched(shape.mesh, close, shape.name);
 }
 
+TEST_F(SlicemapConservativeGlTest, LargeTrianglesOfAnyShapeLoseNoColumn) {
+    const GridTransform transform = GridTransform::box(kUnitBox, {280, 250, 30}).value();
+    const TriangleMesh meshes[] = {ref::makeTriangleSoup(kUnitBox, 40, 2.5f, 7),
+                                   ref::makeSlivers(kUnitBox, 60, 1.7f, 0.05f, 8),
+                                   ref::makeSlivers(kUnitBox, 60, 1.7f, 1e-5f, 9)};
+    for (const TriangleMesh& mesh : meshes)
+        for (const glm::uvec3& triangle : mesh.triangles) {
+            // Alone, so that no other covers what it misses; both windings.
+            TriangleMesh one = mesh;
+            one.triangles = {triangle};
+            expectTouched(one, transform, "triangle");
+            EXPECT_TRUE(
+                compare(voxelize(one, transform), voxelize(ref::flipped(one), transform))->equal());
+        }
+}
+
 TEST_F(SlicemapConservativeGlTest, TrianglesThatReachFarBeyondTheGridLoseNoColumn) {
     const GridTransform transform =
         GridTransform::box({{0, 0, 0}, {1, 1, 1}}, {64, 64, 64}).value();

@@ -137,8 +137,8 @@ TEST_F(ToolErrors, WordsOfLaterVersionsSayWhatIsServed) {
     for (const char* backend : {"local_slicemap", "mrt_slicemap", "volume"})
         expectFailure({mesh, "--backend", backend, "-o", out}, kUnsupported,
                       {backend, "not served by this version", "auto, slicemap, overlap"});
-    expectFailure({mesh, "--backend", "slicemap", "--coverage", "solid", "-o", out}, kUnsupported,
-                  {"solid", "slicemap", "overlap"});
+    expectFailure({mesh, "--backend", "slicemap", "--coverage", "separating6", "-o", out},
+                  kUnsupported, {"separating6", "slicemap", "overlap"});
 }
 
 TEST_F(ToolErrors, OutputsAreCheckedBeforeTheMeshIsRead) {
