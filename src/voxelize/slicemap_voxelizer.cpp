@@ -1,11 +1,11 @@
 #include "voxelize/slicemap_voxelizer.hpp"
 
+#include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 #include "grid/grid_constants.hpp"
 #include "voxelize/column_parity.hpp"
 #include "voxelize/mesh_view.hpp"
-#include "voxelize/volume_state.hpp"
 
 #include <glm/matrix.hpp>
 
@@ -245,7 +245,7 @@ Result<VoxelizeStats> SlicemapVoxelizer::voxelize(std::span<const GeometrySource
         (size.z + BitGrid::kSlicesPerGroup - 1) / BitGrid::kSlicesPerGroup;
     const GladGLContext& gl = mDevice->gl;
     gl::RasterStateGuard guard(*mDevice, 2);
-    const ImageUnitGuard imageGuard(*mDevice, isSolid() ? 1 : 0);
+    const gl::ImageUnitGuard imageGuard(*mDevice, isSolid() ? 1 : 0);
     if (isSolid())
         mColumnParity.begin();
     uploadDrawBlocks(*prepared, transform, passCount);
