@@ -26,13 +26,13 @@ protected:
         return test::voxelize(device(), {backend, Coverage::Conservative}, mesh, transform);
     }
 
-    /// Nothing missing, nothing that a voxel grown by 1e-4 would not touch.
+    /// Nothing missing, nothing that a voxel grown by 1e-5 would not touch.
     void expectTouched(const TriangleMesh& mesh, const GridTransform& transform,
                        const std::string& name) {
         const BitGrid found = voxelize(mesh, transform);
         // Shrunk by what double rounding may decide either way.
         const BitGrid must = ref::touched(mesh, transform, {.grow = -1e-9}).value();
-        const BitGrid may = ref::touched(mesh, transform, {.grow = 1e-4}).value();
+        const BitGrid may = ref::touched(mesh, transform, {.grow = 1e-5}).value();
         EXPECT_EQ(compare(must, found)->onlyFirst, 0u) << name << ": missing voxels";
         EXPECT_EQ(compare(found, may)->onlyFirst, 0u) << name << ": superfluous voxels";
         EXPECT_GT(found.count(), 0u) << name;
@@ -213,7 +213,7 @@ TEST_F(SlicemapConservativeGlTest, RealMeshesMissNothingAndHoldHardlyMore) {
         const BitGrid found = voxelize(real.mesh, transform);
         const BitGrid must = ref::overlap(real.mesh, transform, {.grow = -1e-9}).value();
         const BitGrid exact = ref::overlap(real.mesh, transform).value();
-        const BitGrid may = ref::overlap(real.mesh, transform, {.grow = 1e-4}).value();
+        const BitGrid may = ref::overlap(real.mesh, transform, {.grow = 1e-5}).value();
         EXPECT_EQ(compare(must, found)->onlyFirst, 0u) << real.name << ": missing voxels";
         EXPECT_EQ(compare(found, may)->onlyFirst, 0u) << real.name << ": superfluous voxels";
         // 5 % were asked for.
