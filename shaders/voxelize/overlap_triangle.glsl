@@ -1,5 +1,5 @@
 // Which voxels a triangle meets, by separating axes [Schwarz & Seidel 2010], solved for the slices of
-// one column. Needs Real, Real2, Real3: float or double types.
+// one column. Needs Real, Real2, Real3: float or double types, and kVertical.
 //
 // A triangle and a convex box are apart if and only if their shadows are on one of 13 axes: the 3 grid
 // axes, the triangle's normal, and the 9 cross products of its edges with the grid axes. For a voxel
@@ -109,11 +109,6 @@ Real2 laminaColumnSlices(LaminaOverlapTriangle t, Real x, Real y) {
     return Real2(max(laminaGreatest(z + t.lowZX), plane + t.planeRange.x), min(laminaLeast(z + t.highZX), plane + t.planeRange.y));
 }
 
-// Sets slices [first, last] of a column. One atomic a word: other triangles set bits of it too.
-void laminaSetSlices(int x, int y, int first, int last) {
-    for (int word = first >> 5; word <= last >> 5; ++word) {
-        int low = max(first - word * 32, 0);
-        int high = min(last - word * 32, 31);
-        atomicOr(laminaWords[laminaWordIndex(x, y, word)], (0xffffffffu >> uint(31 - high)) & (0xffffffffu << uint(low)));
-    }
-}
+// What is done with the voxels a triangle meets: told the triangle, then slices [first, last] of columns.
+void laminaBeginTriangle(uint triangle, dvec3 corners[3]);
+void laminaVisitSlices(int x, int y, int first, int last);

@@ -13,8 +13,11 @@ namespace lamina {
 /// Triangles in buffers that compute shaders can read.
 struct OverlapSource {
     glm::dmat4 localToGrid{1.0};
+    glm::dmat3 normalToWorld{1.0};
     MeshView view; ///< Its model matrix is part of localToGrid.
     std::uint64_t triangles = 0;
+    CaptureContent content = CaptureContent::Positions; ///< Which streams the shaders read.
+    bool hasVertexMaterials = false;                    ///< Captured: an id follows each colour.
 
     /// Fills in what the shaders need to know of a chunk of the triangles.
     void write(std::uint64_t firstTriangle, std::uint64_t count, std::uint64_t alignment,
@@ -22,14 +25,19 @@ struct OverlapSource {
     /// Binds the buffers of that chunk.
     void bind(const gl::DeviceState& device, std::uint64_t firstTriangle,
               std::uint64_t count) const;
+
+private:
+    void writeSurface(std::uint64_t firstTriangle, std::uint64_t count, std::uint64_t alignment,
+                      shared::LaminaOverlapConstants& block) const;
 };
 
 /// Turns the sources of a voxelize() call into such triangles.
 class OverlapSources {
 public:
-    explicit OverlapSources(std::shared_ptr<gl::DeviceState> device)
+    OverlapSources(std::shared_ptr<gl::DeviceState> device, CaptureContent content)
         : mDevice(device)
-        , mCapture(std::move(device)) {}
+        , mContent(content)
+        , mCapture(std::move(device), content) {}
 
     /// Checks all sources, then captures those that need it. Counts triangles in `stats`.
     /// Errors: as Voxelizer::voxelize().
@@ -39,6 +47,7 @@ public:
 
 private:
     std::shared_ptr<gl::DeviceState> mDevice;
+    CaptureContent mContent;
     TriangleCapture mCapture;
 };
 

@@ -1,18 +1,16 @@
 #include "voxelize/triangle_capture.hpp"
 
-#include "gl/program_cache.hpp"
 #include "voxelize/mesh_view.hpp"
+#include "voxelize/volume_mesh.hpp"
 
 #include "lamina/shared/constants.glsl"
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 namespace lamina {
 namespace {
 
-constexpr std::uint64_t kTriangleBytes = 9 * sizeof(float);
 /// Of a source that does not say how many it draws.
 constexpr std::uint64_t kFirstCapacity = 1u << 16u;
 constexpr std::uint64_t kGrowth = 4;
@@ -21,31 +19,34 @@ constexpr GLuint kUnused = 0xffffffffu;
 
 } // namespace
 
-TriangleCapture::TriangleCapture(std::shared_ptr<gl::DeviceState> device)
+TriangleCapture::TriangleCapture(std::shared_ptr<gl::DeviceState> device, CaptureContent content)
     : mDevice(std::move(device))
+    , mContent(content)
     , mFeedback(gl::TransformFeedback::create(mDevice, "lamina capture"))
     , mFramebuffer(gl::Framebuffer::create(mDevice, "lamina capture"))
-    , mVertexArray(gl::VertexArray::create(mDevice, "lamina capture")) {
+    , mVertexArray(createAttributeArray(mDevice)) {
     const GladGLContext& gl = mDevice->gl;
     // A draw needs a complete framebuffer, even if it rasterizes nothing.
     gl.NamedFramebufferParameteri(mFramebuffer.id(), GL_FRAMEBUFFER_DEFAULT_WIDTH, 1);
     gl.NamedFramebufferParameteri(mFramebuffer.id(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, 1);
-    gl.EnableVertexArrayAttrib(mVertexArray.id(), LAMINA_ATTRIBUTE_POSITION);
-    gl.VertexArrayAttribFormat(mVertexArray.id(), LAMINA_ATTRIBUTE_POSITION, 3, GL_FLOAT, GL_FALSE,
-                               0);
-    gl.VertexArrayAttribBinding(mVertexArray.id(), LAMINA_ATTRIBUTE_POSITION, 0);
+}
+
+std::uint64_t TriangleCapture::triangleBytes() const {
+    return 3 * (keepsSurfaces() ? LAMINA_CAPTURE_SURFACE_BYTES : LAMINA_CAPTURE_POSITION_BYTES);
+}
+
+Result<GLuint> TriangleCapture::buildProgram(const gl::ProgramStage& stage) const {
+    return gl::findOrBuildProgram(
+        *mDevice,
+        {"lamina capture", {stage}, {{"LAMINA_CAPTURE_SURFACE", keepsSurfaces() ? "1" : "0"}}});
 }
 
 Result<GLuint> TriangleCapture::program(const DrawSource& source) const {
-    return gl::findOrBuildProgram(
-        *mDevice, {"lamina capture",
-                   {{GL_VERTEX_SHADER, "voxelize/capture_main.glsl", source.vertexShader}},
-                   {}});
+    return buildProgram({GL_VERTEX_SHADER, "voxelize/capture_main.glsl", source.vertexShader});
 }
 
 Result<GLuint> TriangleCapture::meshProgram() const {
-    return gl::findOrBuildProgram(
-        *mDevice, {"lamina capture", {{GL_VERTEX_SHADER, "voxelize/capture_mesh.vert"}}, {}});
+    return buildProgram({GL_VERTEX_SHADER, "voxelize/capture_mesh.vert"});
 }
 
 Result<void> TriangleCapture::checkHost() const {
@@ -75,7 +76,8 @@ Result<CapturedTriangles> TriangleCapture::capture(std::size_t slot, const DrawS
             return reserved.error();
         run(slot, program, draw);
         if (isCounted || !isFull(slot))
-            return CapturedTriangles{mBuffers[slot].id(), isCounted ? triangles : capacity(slot)};
+            return CapturedTriangles{mBuffers[slot].id(), mContent,
+                                     isCounted ? triangles : capacity(slot)};
     }
 }
 
@@ -84,12 +86,22 @@ Result<CapturedTriangles> TriangleCapture::capture(std::size_t slot, const MeshV
     const std::uint64_t triangles = triangleCount(view);
     if (auto reserved = reserve(slot, triangles); !reserved)
         return reserved.error();
+    if (!mDefaultAttributes) {
+        auto defaults = createDefaultAttributes(mDevice);
+        if (!defaults)
+            return defaults.error();
+        mDefaultAttributes = std::move(*defaults);
+    }
+    MeshView drawn = view;
+    if (!keepsSurfaces())
+        drawn.normals = drawn.colors = {}; // they have not been checked
     run(slot, program, [&](gl::RasterStateGuard& guard) {
         guard.setHostPrimitiveRestart(false);
         mDevice->gl.BindVertexArray(mVertexArray.id());
-        drawMeshView(*mDevice, mVertexArray.id(), view);
+        bindMeshAttributes(*mDevice, mVertexArray.id(), mDefaultAttributes.id(), drawn);
+        drawMeshView(*mDevice, mVertexArray.id(), drawn);
     });
-    return CapturedTriangles{mBuffers[slot].id(), triangles};
+    return CapturedTriangles{mBuffers[slot].id(), mContent, triangles};
 }
 
 Result<void> TriangleCapture::reserve(std::size_t slot, std::uint64_t triangles) {
@@ -97,7 +109,7 @@ Result<void> TriangleCapture::reserve(std::size_t slot, std::uint64_t triangles)
         mBuffers.resize(slot + 1);
     if (capacity(slot) >= triangles)
         return {};
-    auto buffer = gl::createBuffer(mDevice, triangles * kTriangleBytes, nullptr, 0,
+    auto buffer = gl::createBuffer(mDevice, triangles * triangleBytes(), nullptr, 0,
                                    "voxelize: source " + std::to_string(slot) + ", capture of " +
                                        std::to_string(triangles) + " triangles",
                                    "lamina capture");
@@ -127,15 +139,15 @@ void TriangleCapture::run(std::size_t slot, GLuint program, const Draw& draw) {
 }
 
 bool TriangleCapture::isFull(std::size_t slot) const {
-    std::array<GLuint, 9> last{};
-    mDevice->gl.GetNamedBufferSubData(mBuffers[slot].id(),
-                                      static_cast<GLintptr>((capacity(slot) - 1) * kTriangleBytes),
-                                      sizeof last, last.data());
+    std::vector<GLuint> last(triangleBytes() / sizeof(GLuint));
+    mDevice->gl.GetNamedBufferSubData(
+        mBuffers[slot].id(), static_cast<GLintptr>((capacity(slot) - 1) * triangleBytes()),
+        static_cast<GLsizeiptr>(triangleBytes()), last.data());
     return !std::ranges::all_of(last, [](GLuint word) { return word == kUnused; });
 }
 
 std::uint64_t TriangleCapture::capacity(std::size_t slot) const {
-    return slot < mBuffers.size() ? mBuffers[slot].bytes() / kTriangleBytes : 0;
+    return slot < mBuffers.size() ? mBuffers[slot].bytes() / triangleBytes() : 0;
 }
 
 } // namespace lamina

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gl/device_state.hpp"
+#include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 
 #include <lamina/voxelize/geometry_source.hpp>
@@ -11,9 +12,14 @@
 
 namespace lamina {
 
-/// Separate triangles in a GL buffer: three positions of three floats each.
+/// What is kept of a vertex: its position (three floats), or also normal, colour and material id
+/// (LAMINA_CAPTURE_*).
+enum class CaptureContent : std::uint8_t { Positions, Surfaces };
+
+/// Separate triangles in a GL buffer.
 struct CapturedTriangles {
     GLuint buffer = 0;
+    CaptureContent content = CaptureContent::Positions;
     std::uint64_t capacity = 0; ///< Triangles; those that were not drawn have NaN positions.
 };
 
@@ -21,7 +27,7 @@ struct CapturedTriangles {
 /// host may have its own active. Buffers are kept, one a slot, and reused.
 class TriangleCapture {
 public:
-    explicit TriangleCapture(std::shared_ptr<gl::DeviceState> device);
+    TriangleCapture(std::shared_ptr<gl::DeviceState> device, CaptureContent content);
 
     /// The program for capture(): of the host's vertex stage, or of MeshView sources.
     /// Errors: ShaderError.
@@ -48,11 +54,16 @@ private:
     void run(std::size_t slot, GLuint program, const Draw& draw);
     [[nodiscard]] bool isFull(std::size_t slot) const;
     [[nodiscard]] std::uint64_t capacity(std::size_t slot) const;
+    [[nodiscard]] Result<GLuint> buildProgram(const gl::ProgramStage& stage) const;
+    [[nodiscard]] bool keepsSurfaces() const { return mContent == CaptureContent::Surfaces; }
+    [[nodiscard]] std::uint64_t triangleBytes() const;
 
     std::shared_ptr<gl::DeviceState> mDevice;
+    CaptureContent mContent;
     gl::TransformFeedback mFeedback;
     gl::Framebuffer mFramebuffer;
     gl::VertexArray mVertexArray;
+    gl::Buffer mDefaultAttributes;
     std::vector<gl::Buffer> mBuffers;
 };
 

@@ -87,15 +87,22 @@ shared::LaminaVolumeDrawConstants volumeDrawConstants(const GridTransform& trans
     return constants;
 }
 
+glm::dmat3 cofactors(const glm::dmat3& matrix) {
+    return {glm::cross(matrix[1], matrix[2]), glm::cross(matrix[2], matrix[0]),
+            glm::cross(matrix[0], matrix[1])};
+}
+
+glm::dmat3 normalMatrix(const glm::dmat4& localToWorld) {
+    // Cofactors exist for singular matrices too; a mirror's turn normals.
+    const glm::dmat3 linear(localToWorld);
+    return cofactors(linear) * (glm::determinant(linear) < 0.0 ? -1.0 : 1.0);
+}
+
 void setTransform(shared::LaminaVolumeDrawConstants& constants, const GridTransform& transform,
                   const glm::dmat4& localToWorld) {
     const glm::dmat4 columnRows = glm::transpose(transform.worldToColumn() * localToWorld);
-    // Normals change by the cofactors, which exist for singular matrices too; a mirror's turn them.
-    const glm::dmat3 linear(localToWorld);
-    const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                               glm::cross(linear[0], linear[1]));
-    const double turn = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
-    const glm::dmat3 normalRows = glm::transpose(cofactors) * turn;
+    const double turn = glm::determinant(glm::dmat3(localToWorld)) < 0.0 ? -1.0 : 1.0;
+    const glm::dmat3 normalRows = glm::transpose(normalMatrix(localToWorld));
     for (int row = 0; row < 3; ++row) {
         constants.localToColumn[row] = columnRows[row];
         constants.normalToWorld[row] = glm::vec4(glm::vec3(normalRows[row]), turn);

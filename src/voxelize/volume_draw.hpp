@@ -7,6 +7,8 @@
 #include <lamina/voxelize/material.hpp>
 #include <lamina/voxelize/volume_voxelizer.hpp>
 
+#include <glm/mat3x3.hpp>
+
 #include <cstdint>
 #include <span>
 
@@ -24,6 +26,12 @@ namespace lamina {
                                                                     const VolumeVoxelizerDesc& desc,
                                                                     std::size_t materialCount,
                                                                     std::uint32_t subpixelBits);
+
+/// How a linear map changes cross products: cross(M a, M b) = cofactors(M) cross(a, b).
+[[nodiscard]] glm::dmat3 cofactors(const glm::dmat3& matrix);
+
+/// The map of vertex normals from a source's local space to the world, up to their length.
+[[nodiscard]] glm::dmat3 normalMatrix(const glm::dmat4& localToWorld);
 
 /// Sets what depends on a source's place.
 void setTransform(shared::LaminaVolumeDrawConstants& constants, const GridTransform& transform,

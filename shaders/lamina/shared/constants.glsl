@@ -28,6 +28,15 @@
 
 // Vertex attribute locations of MeshView sources.
 #define LAMINA_ATTRIBUTE_POSITION 0
+#define LAMINA_ATTRIBUTE_NORMAL 1
+#define LAMINA_ATTRIBUTE_COLOR 2
+
+// A captured vertex: its position alone, or also normal, colour and material id. Bytes.
+#define LAMINA_CAPTURE_POSITION_BYTES 12
+#define LAMINA_CAPTURE_NORMAL_OFFSET 12
+#define LAMINA_CAPTURE_COLOR_OFFSET 24
+#define LAMINA_CAPTURE_MATERIAL_OFFSET 40
+#define LAMINA_CAPTURE_SURFACE_BYTES 44
 
 // Uniform buffer binding of the voxelization passes.
 #define LAMINA_DRAW_BLOCK_BINDING 0

@@ -33,6 +33,11 @@
 #define LAMINA_INDEX_UINT16 1u
 #define LAMINA_INDEX_UINT32 2u
 
+// LaminaOverlapConstants.colors.z
+#define LAMINA_COLORS_NONE 0u
+#define LAMINA_COLORS_FLOAT 1u
+#define LAMINA_COLORS_UNORM8 2u
+
 // Bindings of the overlap programs.
 #define LAMINA_OVERLAP_BLOCK_BINDING 0
 #define LAMINA_OVERLAP_WORDS_BINDING 0
@@ -41,6 +46,9 @@
 #define LAMINA_OVERLAP_QUEUE_BINDING 3
 #define LAMINA_OVERLAP_COLUMNS_BINDING 4
 #define LAMINA_OVERLAP_BINDING_COUNT 5
+// Those of the attribute programs, which need neither words nor columns.
+#define LAMINA_OVERLAP_NORMALS_BINDING 4
+#define LAMINA_OVERLAP_COLORS_BINDING 5
 
 // One dispatch: a chunk of a source's triangles, into the part of the grid that one storage binding
 // holds.
@@ -57,6 +65,15 @@ struct LaminaOverlapConstants {
     uvec4 vertices;
     // triangles of the chunk, first index in the binding, LAMINA_INDEX_*, unused.
     uvec4 source;
+    // Of the attribute programs. Normals: first word in the binding, words from one to the next (0: the
+    // vertices have none), unused, unused.
+    uvec4 normals;
+    // Colours: first word, words from one to the next, LAMINA_COLORS_*, unused.
+    uvec4 colors;
+    // Material ids: first word in the colours' binding, words from one to the next; or the id of all, 0.
+    uvec4 materials;
+    // Rows of the map of normals from the source's local space to the world.
+    vec4 normalToWorld[3];
     // std140 ends a struct at a multiple of its dvec4's alignment.
     uvec4 unused;
 };

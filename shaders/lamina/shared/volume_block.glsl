@@ -28,11 +28,9 @@
 // Mean normals shorter than this are none: the surfaces' normals cancel out up to rounding.
 #define LAMINA_VOLUME_CANCELLED_NORMAL 0.02
 
-// Voxelization: bindings, vertex attributes and the work of one geometry shader invocation.
+// Voxelization: bindings and the work of one geometry shader invocation.
 #define LAMINA_VOLUME_MATERIAL_BLOCK_BINDING 2
 #define LAMINA_VOLUME_COUNT_IMAGE 0
-#define LAMINA_ATTRIBUTE_NORMAL 1
-#define LAMINA_ATTRIBUTE_COLOR 2
 #define LAMINA_VOLUME_TALL_BLOCK_BINDING 0
 #define LAMINA_VOLUME_LAYERS_PER_INVOCATION 7
 #define LAMINA_VOLUME_INVOCATIONS_OF_LATER_PASSES 32

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "voxelize/volume_constants.hpp"
+
+namespace lamina::shared {
+
+using glm::uvec4;
+using glm::vec4;
+#include "lamina/shared/attribute_block.glsl"
+
+static_assert(sizeof(LaminaAttributeConstants) == 64, "std140");
+static_assert(LAMINA_MAX_MATERIALS <= 1 << LAMINA_MATERIAL_BITS, "ids fit the records");
+
+} // namespace lamina::shared
