@@ -11,10 +11,10 @@ Result<BitRank> BitRank::create(const BitGrid& grid) {
     try {
         rank.mTexels.resize(words.size() / 4);
     } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::OutOfMemory,
-                     "voxel ranks: expected " + std::to_string(words.size() * 2 / (1 << 20)) +
-                         " MiB for " + grid.transform().describe() +
-                         ", found too little memory; use fewer voxels"};
+        return Error{ErrorCode::OutOfMemory, "voxel ranks: expected " +
+                                                 std::to_string(words.size() * 2 / (1 << 20)) +
+                                                 " MiB for " + grid.transform().describe() +
+                                                 ", found too little memory; use fewer voxels"};
     }
     std::size_t count = 0;
     for (std::size_t texel = 0; texel < rank.mTexels.size(); ++texel) {

@@ -27,8 +27,8 @@ constexpr std::uint64_t kMostBatchVoxels = std::uint64_t{1} << 23u;
 
 /// Voxels whose sums a storage binding holds.
 std::uint64_t batchLimit(const gl::DeviceState& device) {
-    return std::min(device.limits.maxStorageBlockBytes / kSumBytes, kMostBatchVoxels) /
-           kBatchStep * kBatchStep;
+    return std::min(device.limits.maxStorageBlockBytes / kSumBytes, kMostBatchVoxels) / kBatchStep *
+           kBatchStep;
 }
 
 Result<void> checkGrid(const VoxelGrid& voxels) {
@@ -117,10 +117,9 @@ struct AttributeVoxelizer::Impl {
 };
 
 Result<GLuint> AttributeVoxelizer::Impl::program(const char* shader, std::size_t store) const {
-    return gl::findOrBuildProgram(*device,
-                                  {"lamina attributes",
-                                   {{GL_COMPUTE_SHADER, shader}},
-                                   {{"LAMINA_GRID_BUFFER_STORE", std::to_string(store)}}});
+    return gl::findOrBuildProgram(*device, {"lamina attributes",
+                                            {{GL_COMPUTE_SHADER, shader}},
+                                            {{"LAMINA_GRID_BUFFER_STORE", std::to_string(store)}}});
 }
 
 Result<void> AttributeVoxelizer::Impl::initialize() {
@@ -134,9 +133,8 @@ Result<void> AttributeVoxelizer::Impl::initialize() {
         programs[store] = {*smallTriangles, *largeTriangles};
     }
     auto resolver = gl::findOrBuildProgram(
-        *device, {"lamina attribute resolve",
-                  {{GL_COMPUTE_SHADER, "voxelize/attribute_resolve.comp"}},
-                  {}});
+        *device,
+        {"lamina attribute resolve", {{GL_COMPUTE_SHADER, "voxelize/attribute_resolve.comp"}}, {}});
     if (!resolver)
         return resolver.error();
     resolveProgram = *resolver;
@@ -150,10 +148,9 @@ Result<void> AttributeVoxelizer::Impl::reserveSums(std::uint64_t voxels) {
     for (gl::Buffer* sums : {&sumsLow, &sumsHigh}) {
         if (sums->bytes() >= bytes)
             continue;
-        auto buffer =
-            gl::createBuffer(device, bytes, nullptr, 0,
-                             "attribute sums of " + std::to_string(voxels) + " voxels",
-                             "lamina attribute sums");
+        auto buffer = gl::createBuffer(device, bytes, nullptr, 0,
+                                       "attribute sums of " + std::to_string(voxels) + " voxels",
+                                       "lamina attribute sums");
         if (!buffer)
             return buffer.error();
         *sums = std::move(*buffer);

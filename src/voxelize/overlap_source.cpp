@@ -46,8 +46,7 @@ Range streamRange(const MeshView& view, const VertexStream& stream, std::uint64_
 }
 
 Range vertexRange(const MeshView& view, std::uint64_t firstTriangle, std::uint64_t count) {
-    return streamRange(view,
-                       {view.vertexBuffer, view.positionOffsetBytes, view.vertexStrideBytes},
+    return streamRange(view, {view.vertexBuffer, view.positionOffsetBytes, view.vertexStrideBytes},
                        kVectorBytes, firstTriangle, count);
 }
 
@@ -166,10 +165,9 @@ void OverlapSource::bind(const gl::DeviceState& device, std::uint64_t firstTrian
         bindRange(device, LAMINA_OVERLAP_NORMALS_BINDING, view.normals.buffer,
                   streamRange(view, view.normals, kVectorBytes, firstTriangle, count));
     if (view.colors.buffer != 0)
-        bindRange(
-            device, LAMINA_OVERLAP_COLORS_BINDING, view.colors.buffer,
-            streamRange(view, view.colors, colorBytes(view, hasVertexMaterials), firstTriangle,
-                        count));
+        bindRange(device, LAMINA_OVERLAP_COLORS_BINDING, view.colors.buffer,
+                  streamRange(view, view.colors, colorBytes(view, hasVertexMaterials),
+                              firstTriangle, count));
 }
 
 Result<std::vector<OverlapSource>> OverlapSources::prepare(std::span<const GeometrySource> sources,

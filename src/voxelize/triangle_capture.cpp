@@ -140,9 +140,9 @@ void TriangleCapture::run(std::size_t slot, GLuint program, const Draw& draw) {
 
 bool TriangleCapture::isFull(std::size_t slot) const {
     std::vector<GLuint> last(triangleBytes() / sizeof(GLuint));
-    mDevice->gl.GetNamedBufferSubData(
-        mBuffers[slot].id(), static_cast<GLintptr>((capacity(slot) - 1) * triangleBytes()),
-        static_cast<GLsizeiptr>(triangleBytes()), last.data());
+    mDevice->gl.GetNamedBufferSubData(mBuffers[slot].id(),
+                                      static_cast<GLintptr>((capacity(slot) - 1) * triangleBytes()),
+                                      static_cast<GLsizeiptr>(triangleBytes()), last.data());
     return !std::ranges::all_of(last, [](GLuint word) { return word == kUnused; });
 }
 

@@ -27,11 +27,10 @@ glm::vec3 octahedral(std::uint32_t packed) {
 }
 
 Error tooManyVoxels(const gl::DeviceState& device, std::uint64_t voxels) {
-    return {ErrorCode::DeviceLimit,
-            "voxel attributes: expected at most " +
-                std::to_string(device.limits.maxTextureBufferTexels) +
-                " set voxels, the texels of a texel buffer here, found " +
-                std::to_string(voxels) + "; use a smaller grid"};
+    return {ErrorCode::DeviceLimit, "voxel attributes: expected at most " +
+                                        std::to_string(device.limits.maxTextureBufferTexels) +
+                                        " set voxels, the texels of a texel buffer here, found " +
+                                        std::to_string(voxels) + "; use a smaller grid"};
 }
 
 } // namespace
@@ -97,14 +96,14 @@ Result<AttributeGrid> VoxelAttributes::download() const {
         std::vector<Record> records(std::min<std::size_t>(count, kPiece));
         for (std::size_t first = 0; first < count; first += records.size()) {
             const std::size_t size = std::min<std::size_t>(records.size(), count - first);
-            device.gl.GetNamedBufferSubData(mImpl->records.id(),
-                                            static_cast<GLintptr>(first * sizeof(Record)),
-                                            static_cast<GLsizeiptr>(size * sizeof(Record)),
-                                            records.data());
+            device.gl.GetNamedBufferSubData(
+                mImpl->records.id(), static_cast<GLintptr>(first * sizeof(Record)),
+                static_cast<GLsizeiptr>(size * sizeof(Record)), records.data());
             for (std::size_t i = 0; i < size; ++i) {
                 const Record& record = records[i];
                 const std::uint32_t color = record[LAMINA_RECORD_COLOR];
-                grid.colors[first + i] = glm::u8vec4(color, color >> 8u, color >> 16u, color >> 24u);
+                grid.colors[first + i] =
+                    glm::u8vec4(color, color >> 8u, color >> 16u, color >> 24u);
                 if (record[LAMINA_RECORD_NORMAL] != LAMINA_NO_NORMAL)
                     grid.normals[first + i] = octahedral(record[LAMINA_RECORD_NORMAL]);
                 grid.hits[first + i] = record[LAMINA_RECORD_HITS];

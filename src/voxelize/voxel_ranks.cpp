@@ -81,8 +81,7 @@ void VoxelRanker::rank(const VoxelGrid& grid, const VoxelRanks& ranks) const {
     gl.UseProgram(program);
     // A power of two, so that offsets are aligned.
     const std::uint64_t step = std::uint64_t{1} << 16u;
-    const std::uint64_t most =
-        std::min(step, mDevice->limits.maxStorageBlockBytes / kBlockBytes);
+    const std::uint64_t most = std::min(step, mDevice->limits.maxStorageBlockBytes / kBlockBytes);
     for (std::uint64_t first = 0; first < ranks.blocks; first += most) {
         const std::uint64_t count = std::min(most, ranks.blocks - first);
         bind(LAMINA_RANK_TEXELS_BINDING, first * kBlockBytes, count * kBlockBytes);
@@ -100,9 +99,8 @@ void VoxelRanker::rank(const VoxelGrid& grid, const VoxelRanks& ranks) const {
 
 std::uint32_t readVoxelCount(const gl::DeviceState& device, const VoxelRanks& ranks) {
     std::uint32_t count = 0;
-    device.gl.GetNamedBufferSubData(ranks.buffer.id(),
-                                    static_cast<GLintptr>(ranks.totalOffsetBytes()), sizeof count,
-                                    &count);
+    device.gl.GetNamedBufferSubData(
+        ranks.buffer.id(), static_cast<GLintptr>(ranks.totalOffsetBytes()), sizeof count, &count);
     return count;
 }
 

@@ -131,8 +131,9 @@ protected:
                 std::max(worstNormal, angle - glm::degrees(2.0 * doubt / glm::length(mean)));
         }
         EXPECT_LE(worstColor, 1.0) << name;
-        EXPECT_LE(worstNormal, 0.1 / 0.1 * 0.1) << name;
-        EXPECT_GT(compared, exact.size() / 2) << name;
+        EXPECT_LE(worstNormal, 0.1) << name;
+        // Needles snapped to segments leave few voxels with an area.
+        EXPECT_GT(compared, exact.size() / 5) << name;
     }
 };
 
@@ -143,6 +144,153 @@ TEST_F(AttributesGlTest, MeansOfShapesAgreeWithTheReference) {
         for (const NamedMesh& shape : test::makeShapes())
             expectMeans(painted(shape.mesh), GridTransform::box(kBox, {31, 23, 140}, axis).value(),
                         shape.name + " along axis " + std::to_string(static_cast<int>(axis)));
+}
+
+TEST_F(AttributesGlTest, MeansOfLargeTrianglesAgreeWithTheReference) {
+    const GridTransform transform =
+        GridTransform::box({{-0.6, -0.8, -0.9}, {0.8, 0.7, 0.95}}, {150, 133, 260}).value();
+    TriangleMesh large = ref::makeBox({-0.55f, -0.7f, -0.8f}, {0.7f, 0.6f, 1.9f});
+    TriangleMesh slanted;
+    slanted.positions = {
+        {-3, -1, -2}, {2, 2.5f, 0.5f}, {0.3f, -2, 3}, {0.2f, 0.21f, -1e4f}, {0.25f, 0.2f, 1e4f}};
+    slanted.triangles = {{0, 1, 2}, {0, 3, 4}, {2, 3, 1}};
+    expectMeans(painted(large), transform, "box");
+    expectMeans(painted(slanted), transform, "slanted");
+    // Every slice of a vertical plane falls to one invocation: no loop may run out.
+    expectMeans(painted(ref::makePlane({0.01f, 0.02f, 0}, {1, 0, 0}, 1.9f)),
+                GridTransform::box(kBox, {16, 256, 1024}).value(), "vertical");
+}
+
+TEST_F(AttributesGlTest, MeansOnPowerOfTwoFractionsAgreeWithTheReference) {
+    // Faces, edges and corners on voxel boundaries everywhere: what lies between two voxels counts
+    // in both, once.
+    const Box3 unit{{-1, -1, -1}, {1, 1, 1}};
+    for (const NamedMesh& shape : test::makeShapes()) {
+        const GridTransform transform = ref::makeDyadicGrid(unit, {32, 24, 29});
+        expectMeans(painted(ref::snapped(shape.mesh, transform, 2)), transform, shape.name);
+    }
+}
+
+TEST_F(AttributesGlTest, MeansOfCoveragesGridsAndModelsAgreeWithTheReference) {
+    const TriangleMesh knot = painted(ref::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 64, 12));
+    const GridTransform transform = GridTransform::box(kBox, {40, 50, 60}).value();
+    // Sampled and Filled make grids in textures, the others in buffers.
+    for (const Coverage coverage : {Coverage::Sampled, Coverage::Filled, Coverage::Separating6})
+        expectMeans(knot, transform, std::string(name(coverage)), coverage);
+    expectMeans(painted(ref::makeTorus({0, 0, 0}, 0.6f, 0.3f, 40, 20), false), transform,
+                "face normals");
+
+    GridCamera camera;
+    camera.worldToEye =
+        glm::lookAt(glm::dvec3(1.1, 1.7, 2.3), glm::dvec3(0.1, 0.0, -0.1), glm::dvec3(0.1, 1, 0));
+    camera.left = -1.4;
+    camera.right = 1.5;
+    camera.bottom = -1.3;
+    camera.top = 1.4;
+    camera.near = 1.2;
+    camera.far = 4.9;
+    expectMeans(knot, GridTransform::camera(camera, {30, 51, 70}).value(), "camera");
+
+    glm::mat4 model = glm::rotate(glm::mat4(1.0f), 0.7f, glm::vec3(0.3f, 1, 0.2f));
+    model = glm::scale(model, glm::vec3(1.2f, -0.5f, 0.8f)); // mirrors
+    expectMeans(knot, transform, "mirrored model", Coverage::Conservative, model);
+}
+
+TEST_F(AttributesGlTest, MeansOfRealMeshesAgreeWithTheReference) {
+    for (const NamedMesh& mesh : test::readRealMeshes({"armadillo.ply"}))
+        expectMeans(painted(mesh.mesh),
+                    GridTransform::box(mesh.mesh.bounds(), glm::uvec3(96)).value(), mesh.name);
+}
+
+TEST_F(AttributesGlTest, AMillionTrianglesInOneVoxel) {
+    // As many parts of whole sections as overflow 32 bits two thousand times over.
+    constexpr std::size_t kCount = 1'000'000;
+    TriangleMesh mesh;
+    mesh.positions = {{-9, -9, 0.5f}, {9, -9, 0.5f}, {0, 9, 0.5f},
+                      {-9, -9, 0.5f}, {9, -9, 0.5f}, {0, 9, 0.5f}};
+    mesh.colors = {{1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 1},
+                   {0, 1, 0, 1}, {0, 1, 0, 1}, {0, 1, 0, 1}};
+    mesh.triangles.assign(kCount, {0, 1, 2});
+    std::fill_n(mesh.triangles.begin(), kCount / 4, glm::uvec3(3, 5, 4)); // the other way round
+    const Result found =
+        voxelize(mesh, GridTransform::box({{0, 0, 0}, {1, 1, 1}}, {1, 1, 1}).value());
+    ASSERT_EQ(found.bits.count(), 1u);
+    EXPECT_EQ(found.attributes.hits[0], kCount);
+    EXPECT_NEAR(found.attributes.colors[0].r, 0.75 * 255, 0.51);
+    EXPECT_EQ(found.attributes.colors[0].g, 255);
+    EXPECT_NEAR(found.attributes.normals[0].z, 1.0f, 1e-4f);
+}
+
+TEST_F(AttributesGlTest, TrianglesThatOnlyTouchOrHaveNoAreaWeighLeast) {
+    TriangleMesh mesh;
+    mesh.positions = {{0.2f, 0.2f, 0.5f},
+                      {0.8f, 0.2f, 0.5f},
+                      {0.5f, 0.8f, 0.5f},
+                      {1.5f, 0.5f, 0.2f},
+                      {1.5f, 0.5f, 0.8f}};
+    mesh.colors = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
+    mesh.triangles = {{0, 1, 2}, {3, 4, 3}};
+    const Result found =
+        voxelize(mesh, GridTransform::box({{0, 0, 0}, {2, 1, 1}}, {2, 1, 1}).value());
+    ASSERT_EQ(found.bits.count(), 2u);
+    EXPECT_EQ(found.attributes.colors[0], glm::u8vec4(255, 0, 0, 255));
+    // The segment has the mean of its corners and no normal.
+    EXPECT_EQ(found.attributes.colors[1], glm::u8vec4(0, 170, 85, 255));
+    EXPECT_EQ(found.attributes.normals[1], glm::vec3(0.0f));
+    EXPECT_EQ(found.attributes.hits[1], 1u);
+}
+
+TEST_F(AttributesGlTest, NormalsThatCancelOutAreNone) {
+    TriangleMesh mesh;
+    mesh.positions = {{-9, -9, 0.5f}, {9, -9, 0.5f}, {0, 9, 0.5f}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
+    const Result found =
+        voxelize(mesh, GridTransform::box({{0, 0, 0}, {1, 1, 1}}, {1, 1, 1}).value());
+    EXPECT_EQ(found.attributes.normals[0], glm::vec3(0.0f));
+    EXPECT_EQ(found.attributes.hits[0], 2u);
+}
+
+TEST_F(AttributesGlTest, TheInsideOfASolidHasNoHits) {
+    const TriangleMesh cube = painted(ref::makeCube({0, 0, 0}, 1.5f));
+    const Result found = voxelize(
+        cube, GridTransform::box({{-1, -1, -1}, {1, 1, 1}}, {20, 20, 20}).value(), Coverage::Solid);
+    std::size_t i = 0, inside = 0;
+    found.bits.forEachSet([&](const glm::uvec3& voxel) {
+        if (glm::all(glm::greaterThan(voxel, glm::uvec3(3))) &&
+            glm::all(glm::lessThan(voxel, glm::uvec3(16)))) {
+            ++inside;
+            EXPECT_EQ(found.attributes.hits[i], 0u);
+            EXPECT_EQ(found.attributes.colors[i], glm::u8vec4(0));
+            EXPECT_EQ(found.attributes.normals[i], glm::vec3(0.0f));
+        }
+        ++i;
+    });
+    EXPECT_EQ(inside, 12u * 12u * 12u);
+}
+
+TEST_F(AttributesGlTest, BatchesOfVoxelsGiveTheSame) {
+    const TriangleMesh knot = painted(ref::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 64, 12));
+    const GridTransform transform = GridTransform::box(kBox, {70, 80, 90}).value();
+    const Result whole = voxelize(knot, transform);
+    // Room for the sums of 4096 voxels in a binding.
+    DeviceLimits& limits = device().state()->limits;
+    const std::uint64_t before = std::exchange(limits.maxStorageBlockBytes, std::uint64_t{1} << 17);
+    auto buffers = MeshBuffers::upload(device(), knot).value();
+    const GeometrySource source = buffers.view();
+    auto grid = VoxelGrid::create(device(), VoxelStore::Buffer).value();
+    ASSERT_TRUE(grid.upload(whole.bits));
+    auto attributes = VoxelAttributes::create(device()).value();
+    const auto stats =
+        AttributeVoxelizer::create(device())->voxelize({&source, 1}, {}, grid, attributes);
+    limits.maxStorageBlockBytes = before;
+    ASSERT_TRUE(stats) << stats.error().text;
+    EXPECT_EQ(stats->passes, (whole.bits.count() + 4095) / 4096);
+    EXPECT_GT(stats->passes, 3u);
+    const AttributeGrid parts = attributes.download().value();
+    EXPECT_EQ(parts.colors, whole.attributes.colors);
+    EXPECT_EQ(parts.normals, whole.attributes.normals);
+    EXPECT_EQ(parts.hits, whole.attributes.hits);
+    EXPECT_EQ(parts.materials, whole.attributes.materials);
 }
 
 } // namespace

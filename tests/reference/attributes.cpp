@@ -45,8 +45,8 @@ struct Part {
 Part measure(const Polygon& polygon) {
     Part part;
     for (std::size_t i = 2; i < polygon.size(); ++i) {
-        const double area = 0.5 * glm::length(glm::cross(polygon[i - 1] - polygon[0],
-                                                         polygon[i] - polygon[0]));
+        const double area =
+            0.5 * glm::length(glm::cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]));
         part.area += area;
         part.centroid += area * (polygon[0] + polygon[i - 1] + polygon[i]) / 3.0;
     }
@@ -60,8 +60,8 @@ glm::dvec3 shares(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& po
     const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     glm::dvec3 areas;
     for (int i = 0; i < 3; ++i)
-        areas[i] = glm::dot(
-            normal, glm::cross(corners[(i + 1) % 3] - point, corners[(i + 2) % 3] - point));
+        areas[i] = glm::dot(normal,
+                            glm::cross(corners[(i + 1) % 3] - point, corners[(i + 2) % 3] - point));
     return areas / (areas.x + areas.y + areas.z);
 }
 
@@ -87,10 +87,9 @@ std::vector<VoxelSurface> surfaces(const TriangleMesh& mesh, const BitGrid& bits
         for (int i = 0; i < 3; ++i) {
             normals[i] = mesh.normals.empty()
                              ? glm::normalize(face)
-                             : glm::normalize(normalMatrix *
-                                              glm::dvec3(mesh.normals[triangle[i]]));
-            colors[i] = mesh.colors.empty() ? glm::dvec4(1.0)
-                                            : glm::dvec4(mesh.colors[triangle[i]]);
+                             : glm::normalize(normalMatrix * glm::dvec3(mesh.normals[triangle[i]]));
+            colors[i] =
+                mesh.colors.empty() ? glm::dvec4(1.0) : glm::dvec4(mesh.colors[triangle[i]]);
         }
         const TriangleBoxTest<double> test(grid, VoxelShape::Cube, options.grow);
         const glm::ivec3 first = glm::max(test.first(), glm::ivec3(0));
@@ -115,8 +114,8 @@ std::vector<VoxelSurface> surfaces(const TriangleMesh& mesh, const BitGrid& bits
                     surface.color +=
                         part.area * (at.x * colors[0] + at.y * colors[1] + at.z * colors[2]);
                     surface.normal +=
-                        part.area * glm::normalize(at.x * normals[0] + at.y * normals[1] +
-                                                   at.z * normals[2]);
+                        part.area *
+                        glm::normalize(at.x * normals[0] + at.y * normals[1] + at.z * normals[2]);
                 }
     }
     return found;

@@ -15,11 +15,11 @@ namespace lamina::reference {
 
 /// What surfaces leave in one voxel.
 struct VoxelSurface {
-    double area = 0.0;         ///< Of all triangles' parts in the voxel, world units squared.
-    glm::dvec4 color{0.0};     ///< Sum over parts of area times the colour at the part's centroid.
-    glm::dvec3 normal{0.0};    ///< The same of the interpolated normal, made unit length.
-    std::uint32_t hits = 0;    ///< Triangles that touch the voxel.
-    double largestPart = 0.0;  ///< Area.
+    double area = 0.0;        ///< Of all triangles' parts in the voxel, world units squared.
+    glm::dvec4 color{0.0};    ///< Sum over parts of area times the colour at the part's centroid.
+    glm::dvec3 normal{0.0};   ///< The same of the interpolated normal, made unit length.
+    std::uint32_t hits = 0;   ///< Triangles that touch the voxel.
+    double largestPart = 0.0; ///< Area.
 };
 
 /// For each set voxel of `bits`, in the order of BitGrid::forEachSet(): clips every triangle to the

@@ -54,8 +54,7 @@ TEST(AttributeReference, ModelMatricesTurnNormalsAndScaleAreas) {
     glm::dmat4 model(1.0);
     model[0][0] = 4.0;
     model[3] = glm::dvec4(2, 2, 2, 1);
-    const BitGrid bits =
-        overlap(mesh, unitGrid({4, 4, 4}), {.model = model}).value();
+    const BitGrid bits = overlap(mesh, unitGrid({4, 4, 4}), {.model = model}).value();
     double area = 0.0;
     for (const VoxelSurface& surface : surfaces(mesh, bits, {.model = model})) {
         area += surface.area;

@@ -17,11 +17,11 @@ namespace lamina {
 /// What one AttributeVoxelizer::voxelize() call did.
 struct AttributeStats {
     std::uint32_t sources = 0;
-    std::uint32_t passes = 0;          ///< Passes over the geometry.
-    std::uint64_t meshTriangles = 0;   ///< Triangles of the MeshView sources.
-    std::uint64_t voxels = 0;          ///< That there is room for: all set ones, or maxVoxels.
-    std::uint64_t attributeBytes = 0;  ///< GL memory of the attributes.
-    std::uint64_t scratchBytes = 0;    ///< GL memory of the voxelizer, kept for the next call.
+    std::uint32_t passes = 0;         ///< Passes over the geometry.
+    std::uint64_t meshTriangles = 0;  ///< Triangles of the MeshView sources.
+    std::uint64_t voxels = 0;         ///< That there is room for: all set ones, or maxVoxels.
+    std::uint64_t attributeBytes = 0; ///< GL memory of the attributes.
+    std::uint64_t scratchBytes = 0;   ///< GL memory of the voxelizer, kept for the next call.
 };
 
 /// Gives the set voxels of a grid, made by any voxelizer and of any coverage, the mean colour and
