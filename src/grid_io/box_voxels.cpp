@@ -5,10 +5,11 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <string>
 
 namespace lamina::detail {
 
-Result<BoxVoxels> BoxVoxels::create(const BitGrid& grid) {
+Result<BoxVoxels> BoxVoxels::create(const BitGrid& grid, const AttributeGrid* attributes) {
     const GridTransform& transform = grid.transform();
     if (!transform.boxAxis() || transform.distribution().kind() != SliceDistribution::Kind::Linear)
         return Error{ErrorCode::Unsupported,
@@ -16,7 +17,37 @@ Result<BoxVoxels> BoxVoxels::create(const BitGrid& grid) {
                          transform.describe() +
                          (transform.boxAxis() ? " with other slices" : " camera grid") +
                          "; voxelize into GridTransform::box() with linear slices"};
-    return BoxVoxels(grid);
+    BoxVoxels voxels(grid);
+    if (attributes == nullptr)
+        return voxels;
+    auto rank = BitRank::create(grid);
+    if (!rank)
+        return rank.error();
+    for (const std::size_t size :
+         {attributes->colors.size(), attributes->normals.size(), attributes->hits.size()})
+        if (size != 0 && size != rank->count())
+            return Error{ErrorCode::InvalidArgument,
+                         "voxels: expected attributes of " + std::to_string(rank->count()) +
+                             " set voxels, found " + std::to_string(size) +
+                             "; give those of the same grid"};
+    voxels.mAttributes = attributes;
+    voxels.mRank = std::make_unique<const BitRank>(std::move(*rank));
+    return voxels;
+}
+
+std::size_t BoxVoxels::index(const glm::uvec3& voxel) const {
+    const glm::uvec3 axes = boxGridAxes(*mGrid->transform().boxAxis());
+    return (*mRank)({voxel[axes.x], voxel[axes.y], voxel[axes.z]});
+}
+
+glm::u8vec4 BoxVoxels::color(const glm::uvec3& voxel) const {
+    const std::size_t i = index(voxel);
+    return isKnown(i) ? mAttributes->colors[i] : glm::u8vec4(0);
+}
+
+glm::vec3 BoxVoxels::normal(const glm::uvec3& voxel) const {
+    const std::size_t i = index(voxel);
+    return isKnown(i) ? mAttributes->normals[i] : glm::vec3(0.0f);
 }
 
 BoxVoxels::BoxVoxels(const BitGrid& grid)

@@ -2,9 +2,11 @@
 
 #include <lamina/core/box.hpp>
 #include <lamina/core/result.hpp>
+#include <lamina/grid/attribute_grid.hpp>
 #include <lamina/grid/bit_grid.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,17 +32,29 @@ struct BitBlock {
 };
 
 /// What a writer sees of a grid: voxels (i,j,k) along world x, y, z, whichever axis the BitGrid's
-/// columns follow. Voxel attributes, when grids carry them, join here.
+/// columns follow, and their attributes.
 class BoxVoxels {
 public:
-    /// `grid` is borrowed and must outlive this object.
-    /// Errors: Unsupported for grids that are not from GridTransform::box() with linear slices.
-    [[nodiscard]] static Result<BoxVoxels> create(const BitGrid& grid);
+    /// `grid` and `attributes` (null: none) are borrowed and must outlive this object.
+    /// Errors: Unsupported for grids that are not from GridTransform::box() with linear slices;
+    /// InvalidArgument for attributes of another number of voxels; OutOfMemory.
+    [[nodiscard]] static Result<BoxVoxels> create(const BitGrid& grid,
+                                                  const AttributeGrid* attributes = nullptr);
 
     [[nodiscard]] const glm::uvec3& size() const { return mSize; } ///< Along world x, y, z.
     [[nodiscard]] const Box3& bounds() const { return mGrid->transform().boxBounds(); }
     [[nodiscard]] glm::dvec3 voxelSize() const { return bounds().size() / glm::dvec3(mSize); }
     [[nodiscard]] std::uint64_t count() const { return mGrid->count(); }
+
+    [[nodiscard]] bool hasColors() const {
+        return mAttributes != nullptr && !mAttributes->colors.empty();
+    }
+    [[nodiscard]] bool hasNormals() const {
+        return mAttributes != nullptr && !mAttributes->normals.empty();
+    }
+    /// Of a set voxel (along world x, y, z); zero, alpha too, where no surface is known.
+    [[nodiscard]] glm::u8vec4 color(const glm::uvec3& voxel) const;
+    [[nodiscard]] glm::vec3 normal(const glm::uvec3& voxel) const;
 
     /// The voxels [low, low + extent), both in the order of `order`, inside the grid. low.x is a
     /// multiple of 32. `block` is reused between calls.
@@ -50,7 +64,15 @@ public:
 private:
     explicit BoxVoxels(const BitGrid& grid);
 
+    /// A set voxel's place in the attributes.
+    [[nodiscard]] std::size_t index(const glm::uvec3& voxel) const;
+    [[nodiscard]] bool isKnown(std::size_t index) const {
+        return mAttributes->hits.empty() || mAttributes->hits[index] != 0;
+    }
+
     const BitGrid* mGrid;
+    const AttributeGrid* mAttributes = nullptr;
+    std::unique_ptr<const BitRank> mRank; ///< With attributes.
     glm::uvec3 mSize;
     int mSliceAxis;           ///< The world axis along which a column's bits run.
     std::size_t mStride[3];   ///< Words between neighbours along a world axis; not for mSliceAxis.

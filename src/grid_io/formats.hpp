@@ -5,6 +5,7 @@
 #include <lamina/grid_io/atomic_file.hpp>
 #include <lamina/grid_io/grid_file.hpp>
 
+#include <bit>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -16,7 +17,10 @@ namespace lamina::detail {
 Result<void> writeBinvox(AtomicFile& file, const BoxVoxels& voxels,
                          const GridWriteOptions& options);
 Result<void> writeVox(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options);
-Result<void> writeNpy(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options);
+/// What a .npy file holds: a byte for each voxel, or a row for each set voxel.
+enum class NpyArray : std::uint8_t { Occupancy, Color, Normal };
+Result<void> writeNpy(AtomicFile& file, const BoxVoxels& voxels, NpyArray array,
+                      const GridWriteOptions& options);
 Result<void> writeVti(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options);
 Result<void> writeVdb(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options);
 
@@ -37,6 +41,15 @@ Error invalidFile(const std::filesystem::path& path, const std::string& detail);
 inline void report(const GridWriteOptions& options, double fraction) {
     if (options.progress)
         options.progress(fraction);
+}
+
+/// Calls visit(index) for each bit of a row that is set, in order.
+template<class Visitor>
+void forEachBit(std::span<const std::uint32_t> row, Visitor&& visit) {
+    for (std::size_t w = 0; w < row.size(); ++w)
+        for (std::uint32_t bits = row[w]; bits != 0; bits &= bits - 1)
+            visit(static_cast<std::uint32_t>(32 * w) +
+                  static_cast<std::uint32_t>(std::countr_zero(bits)));
 }
 
 /// Slices of the slowest axis that a writer loads at once: the step of BitGrid's words.

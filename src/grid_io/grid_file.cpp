@@ -20,6 +20,22 @@ Result<GridFormat> chosenFormat(const std::filesystem::path& path, GridFormat fo
     return format == GridFormat::Automatic ? gridFormat(path) : Result<GridFormat>(format);
 }
 
+/// Files beside a .npy file: an array for each attribute.
+constexpr std::array kArrays{detail::NpyArray::Color, detail::NpyArray::Normal};
+
+bool isWanted(detail::NpyArray array, const AttributeGrid& attributes) {
+    return array == detail::NpyArray::Color ? !attributes.colors.empty()
+                                            : !attributes.normals.empty();
+}
+
+std::filesystem::path besideFile(const std::filesystem::path& path, detail::NpyArray array) {
+    std::filesystem::path name = path;
+    name.replace_extension();
+    name += array == detail::NpyArray::Color ? ".color" : ".normal";
+    name += path.extension();
+    return name;
+}
+
 Result<void> writeContent(GridFormat format, AtomicFile& file, const detail::BoxVoxels& voxels,
                           const GridWriteOptions& options) {
     switch (format) {
@@ -28,7 +44,7 @@ Result<void> writeContent(GridFormat format, AtomicFile& file, const detail::Box
     case GridFormat::Vox:
         return detail::writeVox(file, voxels, options);
     case GridFormat::Npy:
-        return detail::writeNpy(file, voxels, options);
+        return detail::writeNpy(file, voxels, detail::NpyArray::Occupancy, options);
     case GridFormat::Vti:
         return detail::writeVti(file, voxels, options);
     case GridFormat::Vdb:
@@ -85,6 +101,27 @@ bool canWrite(GridFormat format) {
     return format != GridFormat::Vdb || hasVdb;
 }
 
+bool holdsColors(GridFormat format) {
+    return format == GridFormat::Vox || holdsNormals(format);
+}
+
+bool holdsNormals(GridFormat format) {
+    return format == GridFormat::Npy || format == GridFormat::Vti || format == GridFormat::Vdb;
+}
+
+Result<std::vector<std::filesystem::path>> gridFiles(const std::filesystem::path& path,
+                                                     const GridWriteOptions& options) {
+    const auto format = chosenFormat(path, options.format);
+    if (!format)
+        return format.error();
+    std::vector<std::filesystem::path> files{path};
+    if (*format == GridFormat::Npy && options.attributes != nullptr)
+        for (const detail::NpyArray array : kArrays)
+            if (isWanted(array, *options.attributes))
+                files.push_back(besideFile(path, array));
+    return files;
+}
+
 Result<void> writeGrid(const std::filesystem::path& path, const BitGrid& grid,
                        const GridWriteOptions& options) {
     const auto format = chosenFormat(path, options.format);
@@ -96,7 +133,8 @@ Result<void> writeGrid(const std::filesystem::path& path, const BitGrid& grid,
             "write '" + path.string() +
                 "': expected a lamina built with OpenVDB, found one without; install OpenVDB "
                 "and build again, or choose .vti, .vox, .npy or .binvox"};
-    const auto voxels = detail::BoxVoxels::create(grid);
+    const auto voxels =
+        detail::BoxVoxels::create(grid, holdsColors(*format) ? options.attributes : nullptr);
     if (!voxels)
         return Error{voxels.error().code, "write '" + path.string() + "': " + voxels.error().text};
     try {
@@ -105,6 +143,21 @@ Result<void> writeGrid(const std::filesystem::path& path, const BitGrid& grid,
             return file.error();
         if (auto written = writeContent(*format, *file, *voxels, options); !written)
             return written;
+        std::vector<AtomicFile> beside;
+        if (*format == GridFormat::Npy && options.attributes != nullptr)
+            for (const detail::NpyArray array : kArrays) {
+                if (!isWanted(array, *options.attributes))
+                    continue;
+                auto added = AtomicFile::create(besideFile(path, array));
+                if (!added)
+                    return added.error();
+                if (auto written = detail::writeNpy(*added, *voxels, array, {}); !written)
+                    return written;
+                beside.push_back(std::move(*added));
+            }
+        for (AtomicFile& added : beside)
+            if (auto committed = added.commit(); !committed)
+                return committed;
         return file->commit();
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::OutOfMemory,

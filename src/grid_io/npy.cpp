@@ -109,13 +109,10 @@ std::uint32_t byteAt(std::span<const std::byte> bytes, std::size_t index) {
     return std::to_integer<std::uint32_t>(bytes[index]);
 }
 
-} // namespace
-
-Result<void> writeNpy(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options) {
-    const glm::uvec3 size = voxels.size();
-    std::string header = "{'descr': '|u1', 'fortran_order': False, 'shape': (" +
-                         std::to_string(size.z) + ", " + std::to_string(size.y) + ", " +
-                         std::to_string(size.x) + "), }";
+Result<void> writeHeader(AtomicFile& file, std::string_view type,
+                         const std::vector<std::uint64_t>& shape) {
+    std::string header = "{'descr': '" + std::string(type) +
+                         "', 'fortran_order': False, 'shape': " + text(shape) + ", }";
     // The data begins at a multiple of 64 bytes, after a line feed.
     const std::size_t prefix = kMagic.size() + 4;
     header.append(63 - (prefix + header.size()) % 64, ' ');
@@ -123,9 +120,45 @@ Result<void> writeNpy(AtomicFile& file, const BoxVoxels& voxels, const GridWrite
     std::string start(kMagic);
     start += {'\x01', '\x00', static_cast<char>(header.size() & 0xff),
               static_cast<char>(header.size() >> 8)};
-    if (auto written = file.write(start + header); !written)
-        return written;
+    return file.write(start + header);
+}
 
+/// A row for each set voxel in C order: valueOf(voxel) as it is in memory.
+template<class ValueOf>
+Result<void> writeRows(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options,
+                       ValueOf&& valueOf) {
+    std::vector<decltype(valueOf(glm::uvec3(0)))> values;
+    return forEachRow(voxels, {0, 1, 2}, options,
+                      [&](std::span<const std::uint32_t> row, std::uint32_t y, std::uint32_t z) {
+                          values.clear();
+                          forEachBit(row, [&](std::uint32_t x) {
+                              values.push_back(valueOf(glm::uvec3(x, y, z)));
+                          });
+                          return file.write(std::as_bytes(std::span(values)));
+                      });
+}
+
+} // namespace
+
+Result<void> writeNpy(AtomicFile& file, const BoxVoxels& voxels, NpyArray array,
+                      const GridWriteOptions& options) {
+    static_assert(std::endian::native == std::endian::little && sizeof(glm::vec3) == 12,
+                  "normals are stored as they are");
+    const glm::uvec3 size = voxels.size();
+    if (array == NpyArray::Color) {
+        if (auto written = writeHeader(file, "|u1", {voxels.count(), 4}); !written)
+            return written;
+        return writeRows(file, voxels, options,
+                         [&](const glm::uvec3& voxel) { return voxels.color(voxel); });
+    }
+    if (array == NpyArray::Normal) {
+        if (auto written = writeHeader(file, "<f4", {voxels.count(), 3}); !written)
+            return written;
+        return writeRows(file, voxels, options,
+                         [&](const glm::uvec3& voxel) { return voxels.normal(voxel); });
+    }
+    if (auto written = writeHeader(file, "|u1", {size.z, size.y, size.x}); !written)
+        return written;
     std::vector<std::uint8_t> bytes(size.x);
     return forEachRow(voxels, {0, 1, 2}, options,
                       [&](std::span<const std::uint32_t> row, std::uint32_t, std::uint32_t) {

@@ -155,7 +155,7 @@ Result<Image> renderPreview(const BitGrid& grid, const PreviewDesc& desc,
                             const ProgressCallback& progress) {
     if (auto valid = validate(desc); !valid)
         return valid.error();
-    const auto voxels = detail::BoxVoxels::create(grid);
+    const auto voxels = detail::BoxVoxels::create(grid, desc.attributes);
     if (!voxels)
         return Error{voxels.error().code, "preview: " + voxels.error().text};
     try {

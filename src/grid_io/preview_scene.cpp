@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -74,14 +75,22 @@ glm::vec3 rollOff(const glm::vec3& color) {
            ((knee + (1.0f - knee) * (1.0f - std::exp((knee - most) / (1.0f - knee)))) / most);
 }
 
+float linearFromSrgb(float value) {
+    return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
+}
+
+/// By 8-bit value.
+const std::array<float, 256> kLinear = [] {
+    std::array<float, 256> table{};
+    for (std::size_t i = 0; i < table.size(); ++i)
+        table[i] = linearFromSrgb(static_cast<float>(i) / 255.0f);
+    return table;
+}();
+
 } // namespace
 
 glm::vec3 linearFromSrgb(const glm::vec3& color) {
-    glm::vec3 result;
-    for (int i = 0; i < 3; ++i)
-        result[i] =
-            color[i] <= 0.04045f ? color[i] / 12.92f : std::pow((color[i] + 0.055f) / 1.055f, 2.4f);
-    return result;
+    return {linearFromSrgb(color.r), linearFromSrgb(color.g), linearFromSrgb(color.b)};
 }
 
 glm::vec3 srgbFromLinear(const glm::vec3& color) {
@@ -113,7 +122,8 @@ struct PreviewScene::Surface {
 };
 
 PreviewScene::PreviewScene(const BoxVoxels& voxels, const PreviewDesc& desc)
-    : mTree(voxels)
+    : mVoxels(voxels)
+    , mTree(voxels)
     , mDesc(desc)
     , mCamera(voxels.bounds(), desc)
     , mOrigin(voxels.bounds().min)
@@ -238,6 +248,9 @@ PreviewScene::Surface PreviewScene::surface(const VoxelHit& hit, const glm::dvec
 }
 
 glm::vec3 PreviewScene::albedo(const glm::ivec3& voxel) const {
+    if (mVoxels.hasColors())
+        if (const glm::u8vec4 color = mVoxels.color(glm::uvec3(voxel)); color != glm::u8vec4(0))
+            return {kLinear[color.r], kLinear[color.g], kLinear[color.b]};
     const double height = glm::dot(mOrigin + (glm::dvec3(voxel) + 0.5) * mEdge, mUp) - mFoot;
     const auto share = static_cast<float>(smooth(0.0, 1.0, height / mHeight));
     return glm::mix(mLowColor, mHighColor, share);

@@ -16,6 +16,7 @@ glm::vec3 srgbFromLinear(const glm::vec3& color);
 /// Voxels under sun and sky on a ground that shows nothing but their shadow.
 class PreviewScene {
 public:
+    /// `voxels` is borrowed and must outlive this object.
     PreviewScene(const BoxVoxels& voxels, const PreviewDesc& desc);
 
     /// The sum of the samples [first, end) of a pixel, in linear light, premultiplied by alpha,
@@ -38,6 +39,7 @@ private:
     [[nodiscard]] glm::vec3 skyLight(const Surface& surface, const Randoms& randoms) const;
     [[nodiscard]] bool sunReaches(const glm::dvec3& position, const Randoms& randoms) const;
 
+    const BoxVoxels& mVoxels;
     VoxelTree mTree;
     PreviewDesc mDesc;
     PreviewCamera mCamera;

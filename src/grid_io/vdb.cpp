@@ -10,6 +10,7 @@
 #pragma GCC visibility pop
 
 #include <algorithm>
+#include <optional>
 #include <ostream>
 #include <streambuf>
 
@@ -107,16 +108,20 @@ void addLeaf(Accessor& accessor, const BitBlock& block, const openvdb::Coord& lo
         leaf->setValueOn(voxel.pos(), 1.0f);
 }
 
-openvdb::FloatGrid::Ptr densityGrid(const BoxVoxels& voxels, const GridWriteOptions& options) {
-    auto grid = openvdb::FloatGrid::create(0.0f);
-    grid->setName("density");
-    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+openvdb::math::Transform::Ptr transformOf(const BoxVoxels& voxels) {
     const glm::dvec3 edge = voxels.voxelSize();
     const glm::dvec3 center = voxels.bounds().min + 0.5 * edge;
     openvdb::math::Mat4d matrix = openvdb::math::Mat4d::identity();
     matrix.preScale(openvdb::Vec3d(edge.x, edge.y, edge.z));
     matrix.postTranslate(openvdb::Vec3d(center.x, center.y, center.z));
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+    return openvdb::math::Transform::createLinearTransform(matrix);
+}
+
+openvdb::FloatGrid::Ptr densityGrid(const BoxVoxels& voxels, const GridWriteOptions& options) {
+    auto grid = openvdb::FloatGrid::create(0.0f);
+    grid->setName("density");
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    grid->setTransform(transformOf(voxels));
 
     Accessor accessor(grid->tree());
     const glm::uvec3 size = voxels.size();
@@ -135,6 +140,47 @@ openvdb::FloatGrid::Ptr densityGrid(const BoxVoxels& voxels, const GridWriteOpti
     return grid;
 }
 
+/// A vector for each set voxel of which valueOf(voxel) gives one.
+template<class ValueOf>
+openvdb::Vec3SGrid::Ptr vectorGrid(const BoxVoxels& voxels, const char* name, ValueOf&& valueOf) {
+    auto grid = openvdb::Vec3SGrid::create();
+    grid->setName(name);
+    grid->setTransform(transformOf(voxels));
+    openvdb::tree::ValueAccessor<openvdb::Vec3STree, false> accessor(grid->tree());
+    // Visits by row cannot fail.
+    (void)forEachRow(voxels, {0, 1, 2}, {},
+                     [&](std::span<const std::uint32_t> row, std::uint32_t y, std::uint32_t z) {
+                         forEachBit(row, [&](std::uint32_t x) {
+                             if (const auto value = valueOf(glm::uvec3(x, y, z)))
+                                 accessor.setValue(openvdb::Coord(int(x), int(y), int(z)),
+                                                   openvdb::Vec3s(value->x, value->y, value->z));
+                         });
+                         return Result<void>();
+                     });
+    return grid;
+}
+
+openvdb::Vec3SGrid::Ptr colorGrid(const BoxVoxels& voxels) {
+    return vectorGrid(voxels, "color", [&](const glm::uvec3& voxel) -> std::optional<glm::vec3> {
+        const glm::u8vec4 color = voxels.color(voxel);
+        if (color == glm::u8vec4(0))
+            return std::nullopt;
+        return glm::vec3(color) / 255.0f;
+    });
+}
+
+openvdb::Vec3SGrid::Ptr normalGrid(const BoxVoxels& voxels) {
+    auto grid =
+        vectorGrid(voxels, "normal", [&](const glm::uvec3& voxel) -> std::optional<glm::vec3> {
+            const glm::vec3 normal = voxels.normal(voxel);
+            if (normal == glm::vec3(0.0f))
+                return std::nullopt;
+            return normal;
+        });
+    grid->setVectorType(openvdb::VEC_COVARIANT_NORMALIZE);
+    return grid;
+}
+
 } // namespace
 
 Result<void> writeVdb(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options) {
@@ -143,7 +189,12 @@ Result<void> writeVdb(AtomicFile& file, const BoxVoxels& voxels, const GridWrite
         openvdb::initialize();
         std::ostream stream(&buffer);
         stream.exceptions(std::ios::badbit | std::ios::failbit);
-        StreamArchive().writeTo(stream, {densityGrid(voxels, options)});
+        openvdb::GridCPtrVec grids{densityGrid(voxels, options)};
+        if (voxels.hasColors())
+            grids.push_back(colorGrid(voxels));
+        if (voxels.hasNormals())
+            grids.push_back(normalGrid(voxels));
+        StreamArchive().writeTo(stream, grids);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {

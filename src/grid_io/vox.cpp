@@ -1,4 +1,5 @@
 #include "grid_io/formats.hpp"
+#include "grid_io/palette.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -10,8 +11,8 @@ namespace lamina::detail {
 namespace {
 
 constexpr std::uint32_t kModelSide = 256;
-/// Index into the palette of every voxel, until grids carry colours. Index 0 means empty.
-constexpr std::uint8_t kColor = 1;
+/// Of voxels without a colour.
+constexpr std::uint32_t kPlainColor = 0x528de8;
 
 /// How the file's axes lie in the world, see GridWriteOptions::up.
 struct Mapping {
@@ -78,17 +79,40 @@ struct Model {
     glm::uvec3 size;
 };
 
-/// Loads the voxels of `model`: block rows run along the file's x.
-void loadModel(const BoxVoxels& voxels, const Mapping& map, const Model& model, std::uint32_t sizeY,
-               BitBlock& block) {
+/// The low corner of `model` along the world axes of the file's x, y, z.
+glm::uvec3 worldLow(const Mapping& map, const Model& model, std::uint32_t sizeY) {
     glm::uvec3 low = model.low;
     if (map.mirrorY)
         low.y = sizeY - model.low.y - model.size.y;
-    voxels.load(map.order, low, model.size, block);
+    return low;
 }
 
-Result<void> writeModel(AtomicFile& file, const BitBlock& block, std::uint32_t count,
-                        bool mirrorY) {
+/// Red lowest, without alpha.
+std::uint32_t colorOf(const BoxVoxels& voxels, const glm::uvec3& voxel) {
+    const glm::u8vec4 color = voxels.color(voxel);
+    if (color == glm::u8vec4(0))
+        return kPlainColor;
+    return color.r | std::uint32_t{color.g} << 8u | std::uint32_t{color.b} << 16u;
+}
+
+Palette makePalette(const BoxVoxels& voxels) {
+    if (!voxels.hasColors())
+        return Palette::single(kPlainColor);
+    PaletteBuilder builder;
+    // Visits by row cannot fail.
+    (void)forEachRow(
+        voxels, {0, 1, 2}, {},
+        [&](std::span<const std::uint32_t> row, std::uint32_t y, std::uint32_t z) {
+            forEachBit(row, [&](std::uint32_t x) { builder.add(colorOf(voxels, {x, y, z})); });
+            return Result<void>();
+        });
+    return builder.build(kPaletteColors);
+}
+
+/// Writes a part of the grid; paletteIndex(x, y, z): of the voxel with these indices in `block`.
+template<class PaletteIndex>
+Result<void> writeModel(AtomicFile& file, const BitBlock& block, std::uint32_t count, bool mirrorY,
+                        PaletteIndex&& paletteIndex) {
     const glm::uvec3 size = block.extent;
     if (auto written = writeChunk(file, "SIZE", Bytes().numbers({size.x, size.y, size.z}));
         !written)
@@ -101,15 +125,12 @@ Result<void> writeModel(AtomicFile& file, const BitBlock& block, std::uint32_t c
     for (std::uint32_t z = 0; z < size.z; ++z) {
         entries.clear();
         for (std::uint32_t y = 0; y < size.y; ++y) {
-            const auto row = block.row(mirrorY ? size.y - 1 - y : y, z);
-            for (std::uint32_t w = 0; w < block.rowWords; ++w)
-                for (std::uint32_t bits = row[w]; bits != 0; bits &= bits - 1) {
-                    const std::uint32_t x =
-                        32 * w + static_cast<std::uint32_t>(std::countr_zero(bits));
-                    entries.insert(entries.end(),
-                                   {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
-                                    static_cast<std::uint8_t>(z), kColor});
-                }
+            const std::uint32_t worldY = mirrorY ? size.y - 1 - y : y;
+            forEachBit(block.row(worldY, z), [&](std::uint32_t x) {
+                entries.insert(entries.end(),
+                               {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
+                                static_cast<std::uint8_t>(z), paletteIndex(x, worldY, z)});
+            });
         }
         if (auto written = file.write(std::as_bytes(std::span(entries))); !written)
             return written;
@@ -153,13 +174,16 @@ Result<void> writeSceneGraph(AtomicFile& file, const std::vector<Model>& models,
     return {};
 }
 
-/// Index 1 is the colour of the voxels; the rest is a ramp of greys, ready for painting.
-Bytes palette() {
-    std::string colors{'\xe8', '\x8d', '\x52', '\xff'};
-    for (int i = 1; i < 256; ++i)
-        for (int channel = 0; channel < 4; ++channel)
-            colors += static_cast<char>(channel < 3 ? 255 - i : 255);
-    return Bytes().raw(colors);
+/// The colours of the voxels from index 1 on; the rest is a ramp of greys, ready for painting.
+Bytes paletteChunk(const Palette& palette) {
+    std::string bytes;
+    for (std::size_t i = 0; i < 256; ++i)
+        for (unsigned channel = 0; channel < 4; ++channel)
+            bytes +=
+                static_cast<char>(channel == 3                  ? 255
+                                  : i < palette.colors().size() ? palette.colors()[i] >> 8 * channel
+                                                                : 255 - i);
+    return Bytes().raw(bytes);
 }
 
 Result<void> checkLimits(const BoxVoxels& voxels, const glm::uvec3& size) {
@@ -195,6 +219,7 @@ Result<void> writeVox(AtomicFile& file, const BoxVoxels& voxels, const GridWrite
         return written;
     const std::uint64_t childrenBegin = file.size();
 
+    const Palette palette = makePalette(voxels);
     std::vector<Model> models;
     BitBlock block;
     const bool single = std::max({size.x, size.y, size.z}) <= kModelSide;
@@ -203,7 +228,8 @@ Result<void> writeVox(AtomicFile& file, const BoxVoxels& voxels, const GridWrite
             for (std::uint32_t x = 0; x < size.x; x += kModelSide) {
                 const glm::uvec3 low(x, y, z);
                 const Model model{low, glm::min(size - low, glm::uvec3(kModelSide))};
-                loadModel(voxels, map, model, size.y, block);
+                const glm::uvec3 corner = worldLow(map, model, size.y);
+                voxels.load(map.order, corner, model.size, block);
                 std::uint32_t count = 0;
                 for (const std::uint32_t word : block.words)
                     count += static_cast<std::uint32_t>(std::popcount(word));
@@ -211,7 +237,17 @@ Result<void> writeVox(AtomicFile& file, const BoxVoxels& voxels, const GridWrite
                 if (count == 0 && !single)
                     continue;
                 models.push_back(model);
-                if (auto written = writeModel(file, block, count, map.mirrorY); !written)
+                const auto paletteIndex = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+                    if (!voxels.hasColors())
+                        return std::uint8_t{1};
+                    glm::uvec3 voxel;
+                    voxel[map.order.fast] = corner.x + i;
+                    voxel[map.order.middle] = corner.y + j;
+                    voxel[map.order.slow] = corner.z + k;
+                    return static_cast<std::uint8_t>(1 + palette.index(colorOf(voxels, voxel)));
+                };
+                if (auto written = writeModel(file, block, count, map.mirrorY, paletteIndex);
+                    !written)
                     return written;
             }
         report(options, static_cast<double>(std::min(z + kModelSide, size.z)) / size.z);
@@ -221,13 +257,16 @@ Result<void> writeVox(AtomicFile& file, const BoxVoxels& voxels, const GridWrite
         block.extent = glm::uvec3(1);
         block.rowWords = 1;
         block.words.assign(1, 0);
-        if (auto written = writeModel(file, block, 0, false); !written)
+        const auto none = [](std::uint32_t, std::uint32_t, std::uint32_t) {
+            return std::uint8_t{1};
+        };
+        if (auto written = writeModel(file, block, 0, false, none); !written)
             return written;
     }
     if (!single)
         if (auto written = writeSceneGraph(file, models, size); !written)
             return written;
-    if (auto written = writeChunk(file, "RGBA", palette()); !written)
+    if (auto written = writeChunk(file, "RGBA", paletteChunk(palette)); !written)
         return written;
     Bytes childrenBytes;
     childrenBytes.number(static_cast<std::int64_t>(file.size() - childrenBegin));

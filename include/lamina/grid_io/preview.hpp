@@ -2,6 +2,7 @@
 
 #include <lamina/core/export.hpp>
 #include <lamina/core/result.hpp>
+#include <lamina/grid/attribute_grid.hpp>
 #include <lamina/grid/bit_grid.hpp>
 #include <lamina/grid_io/image.hpp>
 #include <lamina/grid_io/progress.hpp>
@@ -29,6 +30,8 @@ struct PreviewDesc {
         16;                    ///< Primary rays, 1 to 4096; time and smoothness grow with it.
     std::uint32_t threads = 0; ///< Including the caller's; 0: one a processor.
 
+    /// Colours of the set voxels, in their place; borrowed. None, or a voxel without: by height.
+    const AttributeGrid* attributes = nullptr;
     glm::vec3 lowColor{0.12f, 0.31f, 0.55f};  ///< Voxels at the grid's foot.
     glm::vec3 highColor{0.98f, 0.70f, 0.47f}; ///< Voxels at its top.
     glm::vec3 backgroundTop{0.87f, 0.90f, 0.94f};
@@ -48,7 +51,8 @@ struct PreviewDesc {
 /// number of threads.
 /// Memory: 20 bytes a pixel, and 512 bytes for each 16 x 16 x 16 voxels of which any is set.
 /// Cost: about 0.4 microseconds of processor time a sample, whatever the size of the grid.
-/// Errors: InvalidArgument (a value out of its range), Unsupported (another grid), OutOfMemory.
+/// Errors: InvalidArgument (a value out of its range, attributes of another number of voxels),
+/// Unsupported (another grid), OutOfMemory.
 /// Threads: may be called from several; starts `threads` - 1 of its own and waits for them.
 [[nodiscard]] LAMINA_API Result<Image> renderPreview(const BitGrid& grid,
                                                      const PreviewDesc& desc = {},
