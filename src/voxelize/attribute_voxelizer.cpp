@@ -1,9 +1,9 @@
 #include <lamina/voxelize/attribute_voxelizer.hpp>
 
+#include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 #include "voxelize/attribute_constants.hpp"
-#include "voxelize/attribute_state.hpp"
 #include "voxelize/overlap_passes.hpp"
 #include "voxelize/volume_draw.hpp"
 #include "voxelize/voxel_attributes_impl.hpp"
@@ -242,7 +242,7 @@ Result<AttributeStats> AttributeVoxelizer::voxelize(std::span<const GeometrySour
         return reserved.error();
     const gl::ComputeStateGuard guard(*impl.device, LAMINA_ATTRIBUTE_UNIFORM_COUNT,
                                       LAMINA_ATTRIBUTE_BINDING_COUNT);
-    const TextureUnitGuard textureGuard(*impl.device, LAMINA_ATTRIBUTE_PASS_UNITS);
+    const gl::TextureUnitGuard textureGuard(*impl.device, 0, LAMINA_ATTRIBUTE_PASS_UNITS);
     const gl::PixelUnpackGuard unpackGuard(*impl.device); // clears of buffers depend on it
     // The host's shaders may have written the vertices.
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |

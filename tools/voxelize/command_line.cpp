@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -65,6 +66,7 @@ struct Arguments {
     std::string axis = "auto";
     std::optional<std::string> coverage;
     std::string backend = "auto";
+    std::string attributes = "auto";
     std::string context = "auto";
     std::string up = "y";
     std::optional<double> memoryLimit;
@@ -129,6 +131,11 @@ void addMethodOptions(CLI::App& app, Arguments& args) {
                    fmt::format("How voxels are made: {} (default auto); this version serves {}",
                                words(kBackends), words(kBackends, true)))
         ->type_name("WORD")
+        ->group(group);
+    app.add_option("--attributes", args.attributes,
+                   "What voxels keep of the surface: auto, none, or color, normal or color,normal "
+                   "(default auto: colours that the mesh has)")
+        ->type_name("LIST")
         ->group(group);
     app.add_option("--context", args.context,
                    fmt::format("Where OpenGL comes from: {} (default auto: EGL, then OSMesa)",
@@ -248,6 +255,27 @@ void takePreview(const Arguments& args, Request& request) {
     request.preview = preview;
 }
 
+AttributeRequest attributes(std::string_view list) {
+    AttributeRequest request;
+    if (list == "auto")
+        return request;
+    request.isAutomatic = false;
+    if (list == "none")
+        return request;
+    for (std::size_t begin = 0; begin <= list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        const std::string_view word = list.substr(begin, end - begin);
+        if (word != "color" && word != "normal")
+            throw Failure(ExitCode::BadCommandLine,
+                          fmt::format("--attributes: expected auto, none, color, normal or "
+                                      "color,normal, found '{}'",
+                                      list));
+        (word == "color" ? request.color : request.normal) = true;
+        begin = end + 1;
+    }
+    return request;
+}
+
 void takeArguments(const Arguments& args, Request& request) {
     request.mesh = args.mesh;
     takeGrid(args, request.grid);
@@ -256,6 +284,7 @@ void takeArguments(const Arguments& args, Request& request) {
     if (request.compare && args.coverage)
         request.comparedCoverage = request.coverage;
     request.backend = choose("--backend", kBackends, args.backend);
+    request.attributes = attributes(args.attributes);
     request.context = choose("--context", kContexts, args.context);
     request.up = choose("--up", kAxes, args.up);
     request.memoryLimitBytes =

@@ -4,14 +4,39 @@
 #include "open_device.hpp"
 
 #include <lamina/grid/voxel_grid.hpp>
+#include <lamina/voxelize/attribute_voxelizer.hpp>
 #include <lamina/voxelize/geometry_source.hpp>
 
 #include <array>
 
 namespace lamina::tool {
+namespace {
 
-BitGrid voxelizeOnDevice(const Request& request, TriangleMesh mesh, StageClock& clock,
-                         RunRecord& record) {
+/// The attributes of the set voxels of `grid`.
+AttributeGrid recordAttributes(const OpenDevice& open, const MeshBuffers& mesh,
+                               const VoxelGrid& grid, const AttributeRequest& wanted,
+                               StageClock& clock) {
+    auto voxelizer = require(AttributeVoxelizer::create(open.device));
+    auto attributes = require(VoxelAttributes::create(open.device));
+    clock.run("attributes", "recording colours and normals", [&] {
+        const std::array<GeometrySource, 1> sources{mesh.view()};
+        (void)require(voxelizer.voxelize(sources, {}, grid, attributes));
+        open.wait();
+    });
+    return clock.run("download", "reading attributes back", [&] {
+        AttributeGrid host = require(attributes.download());
+        if (!wanted.color)
+            host.colors = {};
+        if (!wanted.normal)
+            host.normals = {};
+        return host;
+    });
+}
+
+} // namespace
+
+Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted, TriangleMesh mesh,
+                        StageClock& clock, RunRecord& record) {
     const GridPlan& plan = *record.grid;
     const GridTransform transform =
         require(GridTransform::box(plan.bounds, plan.counts, plan.axis));
@@ -43,10 +68,17 @@ BitGrid voxelizeOnDevice(const Request& request, TriangleMesh mesh, StageClock& 
                                stats.passes,
                                stats.gridBytes,
                                bits.count(),
-                               std::nullopt};
+                               std::nullopt,
+                               false,
+                               false};
     if (request.coverage == Coverage::Solid)
         record.voxels->oddColumns = require(voxelizer->downloadSolidReport()).oddColumns;
-    return bits;
+    if (!wanted.color && !wanted.normal)
+        return {std::move(bits), std::nullopt};
+    record.voxels->hasColors = wanted.color;
+    record.voxels->hasNormals = wanted.normal;
+    AttributeGrid attributes = recordAttributes(open, buffers, grid, wanted, clock);
+    return {std::move(bits), std::move(attributes)};
 }
 
 } // namespace lamina::tool

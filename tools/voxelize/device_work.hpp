@@ -4,14 +4,24 @@
 #include "run_record.hpp"
 
 #include <lamina/core/triangle_mesh.hpp>
+#include <lamina/grid/attribute_grid.hpp>
 #include <lamina/grid/bit_grid.hpp>
 
+#include <optional>
+
 namespace lamina::tool {
+
+/// Voxels, and their attributes as far as they were asked for.
+struct Voxels {
+    BitGrid bits;
+    std::optional<AttributeGrid> attributes;
+};
 
 /// Makes a context, voxelizes the mesh (given up as soon as the device has it) and brings the
 /// voxels back; all device memory is free again after it. Fills renderer and voxels of `record`,
 /// whose grid is planned. Throws Failure.
-[[nodiscard]] BitGrid voxelizeOnDevice(const Request& request, TriangleMesh mesh, StageClock& clock,
-                                       RunRecord& record);
+/// wanted: attributes to make, nothing automatic left.
+[[nodiscard]] Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted,
+                                      TriangleMesh mesh, StageClock& clock, RunRecord& record);
 
 } // namespace lamina::tool

@@ -51,6 +51,13 @@ Grid:
   Lengths are in the mesh's units. Voxel (i, j, k) has its low corner at
   bounds_min + (i, j, k) * voxel_size; in .npy, a uint8 array of shape (NZ, NY, NX), it is a[k][j][i].
 
+Attributes:
+  color and normal are means over the surface inside a voxel, weighted by area: of the mesh's vertex
+  colours, and of its normals (the faces' own if it has none). .vdb has them as vector grids "color" and
+  "normal", .vti as cell arrays, .vox has colours in a palette of 255, .binvox has none. A .npy file
+  NAME.npy gets NAME.color.npy (N x 4, uint8) and NAME.normal.npy (N x 3, float32) beside it, a row for
+  each set voxel: full[a != 0] = rows; auto makes none of these. Pictures show colours.
+
 Files:
   All are checked before work starts, and appear whole or not at all. Progress and a summary are
   shown on standard error if that is a terminal.
@@ -68,6 +75,7 @@ Examples:
   lamina-voxelize bunny.obj -r 512 -o bunny.npy -o bunny.vox --preview bunny.png
   lamina-voxelize part.stl --voxel-size 0.5 --axis z --up z -o part.vti --stats -
   lamina-voxelize room.ply --bounds -4 0 -4 4 3 4 --grid 256 96 256 -o room.binvox
+  lamina-voxelize statue.ply -r 256 --attributes color,normal -o statue.vox -o statue.vdb
   lamina-voxelize scan.ply --info
   lamina-voxelize bunny.obj -r 512 --compare
 )";

@@ -27,8 +27,17 @@ struct Target {
 
 std::vector<Target> targets(const Request& request) {
     std::vector<Target> all;
-    for (const fs::path& output : request.outputs)
-        all.push_back({"-o", output});
+    AttributeGrid wanted;
+    wanted.colors.resize(request.attributes.color);
+    wanted.normals.resize(request.attributes.normal);
+    GridWriteOptions options;
+    options.attributes = &wanted;
+    for (const fs::path& output : request.outputs) {
+        // Known formats: checked before.
+        const auto files = gridFiles(output, options);
+        for (const fs::path& file : *files)
+            all.push_back({"-o", file});
+    }
     if (request.preview)
         all.push_back({"--preview", request.preview->file});
     if (request.stats && !request.stats->toStandardOutput())

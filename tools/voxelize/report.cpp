@@ -31,10 +31,9 @@ Json toJson(const Box3& box) {
 }
 
 Json toJson(const MeshFacts& mesh) {
-    Json json = {{"file", mesh.file.string()},
-                 {"bytes", mesh.fileBytes},
-                 {"triangles", mesh.triangles},
-                 {"vertices", mesh.vertices},
+    Json json = {{"file", mesh.file.string()},   {"bytes", mesh.fileBytes},
+                 {"triangles", mesh.triangles},  {"vertices", mesh.vertices},
+                 {"colors", mesh.hasColors},     {"normals", mesh.hasNormals},
                  {"bounds", toJson(mesh.bounds)}};
     if (!mesh.report)
         return json;
@@ -123,6 +122,12 @@ std::string statsJson(const RunRecord& record) {
         json["voxels"] = {{"set", voxels.set},
                           {"share", static_cast<double>(voxels.set) / voxelCount(*record.grid)},
                           {"coverage", voxels.coverage}};
+        Json attributes = Json::array();
+        if (voxels.hasColors)
+            attributes.push_back("color");
+        if (voxels.hasNormals)
+            attributes.push_back("normal");
+        json["voxels"]["attributes"] = std::move(attributes);
         if (voxels.oddColumns)
             json["voxels"]["odd_columns"] = *voxels.oddColumns;
         json["backend"] = {{"name", voxels.backend},
@@ -158,9 +163,11 @@ std::string summary(const RunRecord& record) {
         text += fmt::format("grid      {}\n", gridText(*record.grid));
     if (record.voxels)
         text +=
-            fmt::format("voxels    {} set ({:.3g} %), {} coverage by {}\n", record.voxels->set,
+            fmt::format("voxels    {} set ({:.3g} %), {} coverage by {}{}{}\n", record.voxels->set,
                         100.0 * static_cast<double>(record.voxels->set) / voxelCount(*record.grid),
-                        record.voxels->coverage, record.voxels->backend);
+                        record.voxels->coverage, record.voxels->backend,
+                        record.voxels->hasColors ? ", colours" : "",
+                        record.voxels->hasNormals ? ", normals" : "");
     if (record.renderer)
         text += fmt::format("renderer  {}, {}\n", record.renderer->context.kind,
                             record.renderer->context.renderer);
@@ -202,12 +209,13 @@ std::string meshDescription(const RunRecord& record) {
     std::string text =
         fmt::format("file                {} ({})\n"
                     "triangles           {}\n"
-                    "vertices            {}\n"
+                    "vertices            {}{}{}\n"
                     "box                 ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})\n"
                     "size                {:g} x {:g} x {:g}\n",
                     mesh.file.string(), bytesText(static_cast<double>(mesh.fileBytes)),
-                    mesh.triangles, mesh.vertices, box.min.x, box.min.y, box.min.z, box.max.x,
-                    box.max.y, box.max.z, size.x, size.y, size.z);
+                    mesh.triangles, mesh.vertices, mesh.hasColors ? ", with colours" : "",
+                    mesh.hasNormals ? ", with normals" : "", box.min.x, box.min.y, box.min.z,
+                    box.max.x, box.max.y, box.max.z, size.x, size.y, size.z);
     if (mesh.report) {
         const MeshReport& report = *mesh.report;
         text += fmt::format("watertight          {}\n"

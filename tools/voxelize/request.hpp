@@ -21,6 +21,14 @@ struct PreviewRequest {
     glm::uvec2 size{1024, 1024};       ///< Pixels.
 };
 
+/// Which attributes of voxels to make.
+struct AttributeRequest {
+    /// Colours, if the mesh has any and a file holds them without another file beside it.
+    bool isAutomatic = true;
+    bool color = false;
+    bool normal = false;
+};
+
 struct StatsRequest {
     std::filesystem::path file; ///< "-": standard output.
     [[nodiscard]] bool toStandardOutput() const { return file == "-"; }
@@ -32,6 +40,7 @@ struct Request {
     GridRequest grid;
     Coverage coverage = Coverage::Conservative;
     Backend backend = Backend::Automatic;
+    AttributeRequest attributes;
     headless::ContextApi context = headless::ContextApi::Automatic;
     Axis up = Axis::Y;
     double memoryLimitBytes = 0.0;

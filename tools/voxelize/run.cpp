@@ -15,9 +15,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <unistd.h>
 
@@ -57,26 +59,50 @@ TriangleMesh loadMesh(const fs::path& file, StageClock& clock, RunRecord& record
     record.mesh.triangles = mesh.triangles.size();
     record.mesh.vertices = mesh.positions.size();
     record.mesh.bounds = mesh.bounds();
+    record.mesh.hasColors = !mesh.colors.empty();
+    record.mesh.hasNormals = !mesh.normals.empty();
     return mesh;
 }
 
-void writeVoxels(const Request& request, const BitGrid& bits, StageClock& clock,
+/// Does the file get attributes? Without being asked, no further files are made beside it.
+bool takesAttributes(const Request& request, const fs::path& output) {
+    const GridFormat format = *gridFormat(output);
+    return holdsColors(format) && !(request.attributes.isAutomatic && format == GridFormat::Npy);
+}
+
+/// What to make: `auto` means the mesh's colours where a file or a picture shows them.
+AttributeRequest wantedAttributes(const Request& request, bool meshHasColors) {
+    AttributeRequest wanted = request.attributes;
+    if (wanted.isAutomatic)
+        wanted.color =
+            meshHasColors &&
+            (request.preview || std::ranges::any_of(request.outputs, [&](const fs::path& output) {
+                 return takesAttributes(request, output);
+             }));
+    return wanted;
+}
+
+void writeVoxels(const Request& request, const Voxels& voxels, StageClock& clock,
                  RunRecord& record) {
     for (const fs::path& output : request.outputs) {
         const Stopwatch watch;
+        GridWriteOptions options;
+        options.up = request.up;
+        options.progress = [&clock](double fraction) { clock.progress(fraction); };
+        if (voxels.attributes && takesAttributes(request, output))
+            options.attributes = &*voxels.attributes;
         clock.run("write", "writing " + output.filename().string(), [&] {
-            GridWriteOptions options;
-            options.up = request.up;
-            options.progress = [&clock](double fraction) { clock.progress(fraction); };
             const FileGuard guard;
-            require(writeGrid(output, bits, options));
+            require(writeGrid(output, voxels.bits, options));
         });
-        record.files.push_back({output, std::string(name(*gridFormat(output))), fileBytes(output),
-                                watch.milliseconds()});
+        const std::string format(name(*gridFormat(output)));
+        const std::vector<fs::path> files = require(gridFiles(output, options));
+        for (const fs::path& file : files)
+            record.files.push_back({file, format, fileBytes(file), watch.milliseconds()});
     }
 }
 
-void writePreview(const Request& request, const BitGrid& bits, StageClock& clock,
+void writePreview(const Request& request, const Voxels& voxels, StageClock& clock,
                   RunRecord& record) {
     const PreviewRequest& preview = *request.preview;
     const Stopwatch watch;
@@ -85,10 +111,11 @@ void writePreview(const Request& request, const BitGrid& bits, StageClock& clock
         desc.width = preview.size.x;
         desc.height = preview.size.y;
         desc.viewDirection = -preview.view;
+        desc.attributes = voxels.attributes ? &*voxels.attributes : nullptr;
         desc.up = glm::dvec3(0.0);
         desc.up[static_cast<int>(request.up)] = 1.0;
-        const Image image = require(
-            renderPreview(bits, desc, [&clock](double fraction) { clock.progress(fraction); }));
+        const Image image = require(renderPreview(
+            voxels.bits, desc, [&clock](double fraction) { clock.progress(fraction); }));
         const FileGuard guard;
         require(writePng(preview.file, image));
     });
@@ -116,7 +143,23 @@ std::uint64_t columnCount(const GridPlan& grid) {
     return std::uint64_t{grid.counts[axes.x]} * grid.counts[axes.y];
 }
 
+void warnOfAttributes(const Request& request, const RunRecord& record) {
+    const AttributeRequest& asked = request.attributes;
+    for (const fs::path& output : request.outputs) {
+        const GridFormat format = *gridFormat(output);
+        if ((asked.color && !holdsColors(format)) || (asked.normal && !holdsNormals(format)))
+            fmt::print(stderr,
+                       "lamina-voxelize: warning: .{} files hold no {}: {} was written without\n",
+                       name(format), holdsColors(format) ? "normals" : "colours and no normals",
+                       output.string());
+    }
+    if (asked.color && !record.mesh.hasColors)
+        fmt::print(stderr, "lamina-voxelize: warning: the mesh has no colours: voxels are white\n");
+}
+
 void tell(const Request& request, const RunRecord& record) {
+    if (!request.quiet)
+        warnOfAttributes(request, record);
     if (!request.quiet && record.voxels && record.voxels->set == 0)
         fmt::print(
             stderr,
@@ -150,10 +193,11 @@ void run(const Request& request) {
         compareOnDevice(request, mesh, clock, record);
     } else if (!request.infoOnly) {
         checkMemory(*record.grid, request.memoryLimitBytes);
-        const BitGrid bits = voxelizeOnDevice(request, std::move(mesh), clock, record);
-        writeVoxels(request, bits, clock, record);
+        const AttributeRequest wanted = wantedAttributes(request, record.mesh.hasColors);
+        const Voxels voxels = voxelizeOnDevice(request, wanted, std::move(mesh), clock, record);
+        writeVoxels(request, voxels, clock, record);
         if (request.preview)
-            writePreview(request, bits, clock, record);
+            writePreview(request, voxels, clock, record);
     }
     clock.finish();
     record.stages = clock.times();

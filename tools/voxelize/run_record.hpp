@@ -21,6 +21,8 @@ struct MeshFacts {
     std::uint64_t triangles = 0;
     std::uint64_t vertices = 0;
     Box3 bounds;
+    bool hasColors = false;
+    bool hasNormals = false;
     std::optional<MeshReport> report; ///< Where it was asked for: it takes time.
 };
 
@@ -38,6 +40,8 @@ struct VoxelFacts {
     std::uint64_t deviceBytes = 0;
     std::uint64_t set = 0;
     std::optional<std::uint64_t> oddColumns; ///< Of solid coverage: where the mesh is not closed.
+    bool hasColors = false;
+    bool hasNormals = false;
 };
 
 /// A row of --compare.

@@ -1,8 +1,9 @@
 """Reads a voxel file with a reader that is not Lamina's and compares all of it.
 
-usage: check_grid.py FILE OCCUPANCY NX NY NZ LOWX LOWY LOWZ EDGEX EDGEY EDGEZ [UP]
+usage: check_grid.py FILE OCCUPANCY NX NY NZ LOWX LOWY LOWZ EDGEX EDGEY EDGEZ [UP [COLORS NORMALS]]
 
-OCCUPANCY: NX*NY*NZ bytes, 0 or 1, x fastest, then y, then z.
+OCCUPANCY: NX*NY*NZ bytes, 0 or 1, x fastest, then y, then z. COLORS: four bytes, RGBA, for each of these;
+NORMALS: three floats. Both are zero where a voxel has none.
 Exit code 0: equal; 1: a difference, said on standard output; 77: the reader is not installed.
 """
 import struct
@@ -25,11 +26,74 @@ def expect_close(what, found, expected):
         fail(f"{what}: expected {expected}, found {found}")
 
 
+def expect_equal(what, found, expected):
+    if found.shape != expected.shape or found.dtype != expected.dtype:
+        fail(f"{what}: expected {expected.shape} {expected.dtype}, found {found.shape} {found.dtype}")
+    wrong = np.argwhere(np.any(found != expected, axis=-1))
+    if len(wrong):
+        fail(f"{what}: {len(wrong)} differ, the first (k, j, i) = {tuple(wrong[0])}: "
+             f"expected {expected[tuple(wrong[0])]}, found {found[tuple(wrong[0])]}")
+
+
 def read_npy(path, low, edge):
     array = np.load(path, allow_pickle=False)
     if array.dtype != np.uint8 or not array.flags["C_CONTIGUOUS"]:
         fail(f"expected a C-ordered uint8 array, found {array.dtype}")
     return array
+
+
+def check_npy_attributes(path, occupancy, colors, normals):
+    """As the documentation says: full[a != 0] = rows."""
+    for name, expected in (("color", colors), ("normal", normals)):
+        full = np.zeros(expected.shape, dtype=expected.dtype)
+        full[occupancy != 0] = np.load(path[: -len(".npy")] + f".{name}.npy", allow_pickle=False)
+        expect_equal(name, full, expected)
+
+
+def check_vti_attributes(path, shape, colors, normals):
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    reader = vtk.vtkXMLImageDataReader()
+    reader.SetFileName(path)
+    reader.Update()
+    data = reader.GetOutput().GetCellData()
+    for name, expected in (("color", colors), ("normal", normals)):
+        array = data.GetArray(name)
+        if array is None:
+            fail(f"expected the cell array '{name}'")
+        expect_equal(name, vtk_to_numpy(array).reshape(expected.shape), expected)
+
+
+def check_vdb_attributes(path, shape, colors, normals):
+    import pyopenvdb as vdb
+
+    for name, expected in (("color", colors[..., :3] / np.float32(255)), ("normal", normals)):
+        grid = vdb.read(path, name)
+        array = np.zeros(tuple(shape) + (3,), dtype=np.float32)
+        grid.copyToArray(array)
+        known = np.any(colors != 0, axis=-1) if name == "color" else np.any(normals != 0, axis=-1)
+        if grid.activeVoxelCount() != np.count_nonzero(known):
+            fail(f"{name}: expected {np.count_nonzero(known)} active voxels, found {grid.activeVoxelCount()}")
+        expect_equal(name, array.transpose(2, 1, 0, 3), expected)
+
+
+def check_vox_attributes(found, colors, occupancy):
+    expected = colors[..., :3].copy()
+    # Voxels without a colour have the plain one.
+    expected[np.all(colors == 0, axis=-1)] = (0xE8, 0x8D, 0x52)
+    expected[occupancy == 0] = 0
+    different = len(np.unique(expected[occupancy != 0], axis=0))
+    if different <= 255:
+        expect_equal("palette colours", found, expected)
+        return
+    used = len(np.unique(found[occupancy != 0], axis=0))
+    errors = np.linalg.norm(found.astype(float) - expected.astype(float), axis=-1)[occupancy != 0]
+    rms = np.sqrt(np.mean(errors**2))
+    print(f"{different} colours as {used}: error {rms:.2f} of 255 (root mean square), at most {errors.max():.1f}")
+    # A cube of colours in 255 equal cells has edges of 40 and an error of 20.
+    if used != 255 or rms > 20 or errors.max() > 80:
+        fail("the palette is a poor one")
 
 
 def read_vti(path, low, edge):
@@ -54,16 +118,18 @@ def read_vti(path, low, edge):
     return vtk_to_numpy(array).reshape(cells[2], cells[1], cells[0])
 
 
-def read_vdb(path, low, edge, shape):
+def read_vdb(path, low, edge, shape, names):
     try:
         import pyopenvdb as vdb
     except ImportError as error:
         print(error)
         sys.exit(77)
     grids, _ = vdb.readAll(path)
-    if [grid.name for grid in grids] != ["density"] or grids[0].gridClass != vdb.GridClass.FOG_VOLUME:
-        fail("expected one fog volume 'density'")
-    grid = grids[0]
+    if sorted(grid.name for grid in grids) != sorted(names):
+        fail(f"expected the grids {names}, found {[grid.name for grid in grids]}")
+    grid = next(grid for grid in grids if grid.name == "density")
+    if grid.gridClass != vdb.GridClass.FOG_VOLUME:
+        fail("expected 'density' to be a fog volume")
     expect_close("centre of voxel 0", grid.transform.indexToWorld((0, 0, 0)), np.array(low) + 0.5 * np.array(edge))
     expect_close("voxel size", grid.transform.voxelSize(), edge)
     array = np.zeros(shape, dtype=np.float32)
@@ -148,7 +214,7 @@ def read_vox(path, shape, up):
     magic, version, main, content, children = struct.unpack_from("<4si4sii", data, 0)
     if (magic, version, main, content, children) != (b"VOX ", 150, b"MAIN", 0, len(data) - 20):
         fail("expected 'VOX ' 150 and one MAIN chunk to the end of the file")
-    models, nodes, size = [], {}, None
+    models, nodes, size, palette = [], {}, None, None
     for kind, chunk in vox_chunks(data[20:]):
         if kind == "SIZE":
             size = np.array(struct.unpack("<3i", chunk))
@@ -159,10 +225,13 @@ def read_vox(path, shape, up):
             voxels = np.frombuffer(chunk, dtype=np.uint8, offset=4).reshape(count, 4).astype(int)
             if np.any(voxels[:, :3] >= size) or np.any(voxels[:, 3] == 0):
                 fail("XYZI: a voxel lies outside its model or has colour 0")
-            models.append((size, voxels[:, :3]))
+            models.append((size, voxels))
         elif kind == "RGBA":
             if len(chunk) != 1024 or chunk[3] != 255:
                 fail("RGBA: expected 256 colours, the first one opaque")
+            # Colour index i is the file's entry i - 1.
+            palette = np.roll(np.frombuffer(chunk, dtype=np.uint8).reshape(256, 4), 1, axis=0)[:, :3].copy()
+            palette[0] = 0
         elif kind in ("nTRN", "nGRP", "nSHP"):
             nodes[struct.unpack_from("<i", chunk, 0)[0]] = (kind, chunk)
         else:
@@ -184,16 +253,17 @@ def read_vox(path, shape, up):
         size, voxels = models[model]
         if len(models) > 1 and len(voxels) == 0:
             fail("found an empty model")
-        at = voxels + offset - size // 2
+        at = voxels[:, :3] + offset - size // 2
         if np.any(grid[at[:, 0], at[:, 1], at[:, 2]]):
             fail("found a voxel twice")
-        grid[at[:, 0], at[:, 1], at[:, 2]] = 1
+        grid[at[:, 0], at[:, 1], at[:, 2]] = voxels[:, 3]
     # Back to world x, y, z.
     if up == "x":
         grid = grid.transpose(2, 0, 1)
     elif up == "y":
         grid = grid[:, ::-1, :].transpose(0, 2, 1)
-    return grid.transpose(2, 1, 0)
+    grid = grid.transpose(2, 1, 0)
+    return (grid != 0).astype(np.uint8), palette[grid]
 
 
 def main():
@@ -203,11 +273,15 @@ def main():
     edge = [float(word) for word in sys.argv[9:12]]
     up = sys.argv[12] if len(sys.argv) > 12 else "y"
     expected = np.fromfile(occupancy, dtype=np.uint8).reshape(shape[::-1])
+    colors = normals = None
+    if len(sys.argv) > 13:
+        colors = np.fromfile(sys.argv[13], dtype=np.uint8).reshape(shape[::-1] + [4])
+        normals = np.fromfile(sys.argv[14], dtype=np.float32).reshape(shape[::-1] + [3])
     kind = path.rsplit(".", 1)[1]
     if kind == "vdb":
-        found = read_vdb(path, low, edge, shape)
+        found = read_vdb(path, low, edge, shape, ["density"] + (["color", "normal"] if colors is not None else []))
     elif kind == "vox":
-        found = read_vox(path, shape, up)
+        found, painted = read_vox(path, shape, up)
     else:
         found = {"npy": read_npy, "vti": read_vti, "binvox": read_binvox}[kind](path, low, edge)
     if found.shape != expected.shape:
@@ -216,6 +290,13 @@ def main():
     if len(wrong):
         fail(f"{len(wrong)} voxels differ, the first (k, j, i) = {tuple(wrong[0])}")
     print(f"{expected.sum()} set voxels equal")
+    if colors is not None:
+        if kind == "vox":
+            check_vox_attributes(painted, colors, expected)
+        elif kind == "npy":
+            check_npy_attributes(path, expected, colors, normals)
+        else:
+            {"vti": check_vti_attributes, "vdb": check_vdb_attributes}[kind](path, shape, colors, normals)
 
 
 main()
