@@ -1,6 +1,7 @@
 #include "voxelize/automatic_voxelizer.hpp"
 #include "voxelize/overlap_voxelizer.hpp"
 #include "voxelize/slicemap_voxelizer.hpp"
+#include "voxelize/volume_bits_voxelizer.hpp"
 
 #include "gl/device_state.hpp"
 
@@ -32,6 +33,8 @@ std::string_view name(Backend backend) {
         return "slicemap";
     case Backend::Overlap:
         return "overlap";
+    case Backend::Volume:
+        return "volume";
     }
     return "unknown";
 }
@@ -41,6 +44,7 @@ namespace {
 bool serves(Backend backend, Coverage coverage) {
     switch (coverage) {
     case Coverage::Sampled:
+        return backend == Backend::Slicemap || backend == Backend::Volume;
     case Coverage::Filled:
         return backend == Backend::Slicemap;
     case Coverage::Conservative:
@@ -54,8 +58,14 @@ bool serves(Backend backend, Coverage coverage) {
 
 Result<std::unique_ptr<Voxelizer>> createBackend(const Device& device, const VoxelizerDesc& desc,
                                                  Backend backend) {
-    return backend == Backend::Overlap ? createOverlapVoxelizer(device, desc)
-                                       : createSlicemapVoxelizer(device, desc);
+    switch (backend) {
+    case Backend::Overlap:
+        return createOverlapVoxelizer(device, desc);
+    case Backend::Volume:
+        return createVolumeBitsVoxelizer(device, desc);
+    default:
+        return createSlicemapVoxelizer(device, desc);
+    }
 }
 
 } // namespace
@@ -94,7 +104,9 @@ Result<std::unique_ptr<Voxelizer>> Voxelizer::create(const Device& device,
         return Error{ErrorCode::Unsupported,
                      "voxelizer: expected a backend that serves " + coverage + " coverage, found " +
                          asked + "; use Backend::Automatic or " + std::string(name(only)) +
-                         ", or coverage conservative, the nearest that " + asked + " serves"};
+                         ", or coverage " +
+                         (desc.backend == Backend::Volume ? "sampled" : "conservative") +
+                         ", the nearest that " + asked + " serves"};
     auto created = createBackend(device, desc, desc.backend);
     if (created)
         (*created)->setReason(*device.state(), asked + " was asked for");

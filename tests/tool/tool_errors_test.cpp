@@ -134,9 +134,9 @@ TEST_F(ToolErrors, Words) {
 }
 
 TEST_F(ToolErrors, WordsOfLaterVersionsSayWhatIsServed) {
-    for (const char* backend : {"local_slicemap", "mrt_slicemap", "volume"})
+    for (const char* backend : {"local_slicemap", "mrt_slicemap"})
         expectFailure({mesh, "--backend", backend, "-o", out}, kUnsupported,
-                      {backend, "not served by this version", "auto, slicemap, overlap"});
+                      {backend, "not served by this version", "auto, slicemap, volume, overlap"});
     expectFailure({mesh, "--backend", "slicemap", "--coverage", "separating6", "-o", out},
                   kUnsupported, {"separating6", "slicemap", "overlap"});
 }

@@ -41,6 +41,7 @@ TEST_F(ToolInterface, HelpNamesEveryOptionWordAndExitCode) {
                              "--axis",
                              "--memory-limit MIB",
                              "--coverage",
+                             "--attributes LIST",
                              "--backend",
                              "--context",
                              "-o,--output FILE",

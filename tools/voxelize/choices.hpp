@@ -36,7 +36,7 @@ inline constexpr std::array kBackends{
     Choice<Backend>{"slicemap", Backend::Slicemap},
     Choice<Backend>{"local_slicemap"},
     Choice<Backend>{"mrt_slicemap"},
-    Choice<Backend>{"volume"},
+    Choice<Backend>{"volume", Backend::Volume},
     Choice<Backend>{"overlap", Backend::Overlap},
 };
 

@@ -53,10 +53,10 @@ Grid:
 
 Attributes:
   color and normal are means over the surface inside a voxel, weighted by area: of the mesh's vertex
-  colours, and of its normals (the faces' own if it has none). .vdb has them as vector grids "color" and
-  "normal", .vti as cell arrays, .vox has colours in a palette of 255, .binvox has none. A .npy file
-  NAME.npy gets NAME.color.npy (N x 4, uint8) and NAME.normal.npy (N x 3, float32) beside it, a row for
-  each set voxel: full[a != 0] = rows; auto makes none of these. Pictures show colours.
+  colours, and of its normals (the faces' own if it has none). .vdb has them as vector grids "color"
+  and "normal", .vti as cell arrays, .vox has colours in a palette of 255, .binvox has none. NAME.npy
+  gets NAME.color.npy (N x 4, uint8) and NAME.normal.npy (N x 3, float32) beside it, a row for each
+  set voxel: full[a != 0] = rows; auto makes none of these. Pictures show colours.
 
 Files:
   All are checked before work starts, and appear whole or not at all. Progress and a summary are

@@ -49,6 +49,9 @@ enum class Backend : std::uint8_t {
     /// Exact triangle/voxel overlap by compute shaders. Orthographic grids with linear slices;
     /// Conservative, Separating6 and Solid.
     Overlap,
+    /// The hit counts of a VolumeVoxelizer, a byte a voxel, packed to bits: all slices in one pass
+    /// of the geometry ([CLN11] 2). Any grid; Sampled.
+    Volume,
 };
 
 [[nodiscard]] LAMINA_API std::string_view name(Coverage coverage); ///< "sampled"

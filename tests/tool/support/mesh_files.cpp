@@ -24,10 +24,17 @@ std::ofstream textFile(const std::string& file) {
 void writePly(const std::string& file, const TriangleMesh& mesh) {
     std::ofstream stream(file, std::ios::binary);
     stream << "ply\nformat binary_little_endian 1.0\nelement vertex " << mesh.positions.size()
-           << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
-           << mesh.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
-    for (const glm::vec3& position : mesh.positions)
-        put(stream, position);
+           << "\nproperty float x\nproperty float y\nproperty float z\n"
+           << (mesh.colors.empty() ? ""
+                                   : "property float red\nproperty float green\n"
+                                     "property float blue\nproperty float alpha\n")
+           << "element face " << mesh.triangles.size()
+           << "\nproperty list uchar int vertex_indices\nend_header\n";
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        put(stream, mesh.positions[i]);
+        if (!mesh.colors.empty())
+            put(stream, mesh.colors[i]);
+    }
     for (const glm::uvec3& triangle : mesh.triangles) {
         put(stream, std::uint8_t{3});
         put(stream, triangle);
