@@ -39,8 +39,9 @@ struct AttributeStats {
 /// id. A triangle's material is its first vertex's. Sums are 64-bit integers: they do not overflow
 /// for any number of triangles and do not depend on the order. Material::orientation does not
 /// matter.
-/// Accuracy: colours within one step of 8 bits, normals within 0.1 degree of the exact mean, plus
-/// what the step of areas makes. Move-only; see Device for threads and GL state.
+/// Accuracy: colours within one step of 8 bits; normals within 0.04 degree of the exact mean where
+/// a voxel's normals agree, more by as much as they cancel out; plus what the step of areas makes.
+/// Move-only; see Device for threads and GL state.
 class LAMINA_API AttributeVoxelizer {
 public:
     /// Materials of one table.
