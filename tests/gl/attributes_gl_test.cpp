@@ -125,9 +125,12 @@ protected:
             const glm::dvec3 mean = exact[i].normal / exact[i].area;
             if (glm::length(mean) < 0.1)
                 continue;
-            const double cosine =
-                glm::dot(glm::normalize(mean), glm::dvec3(found.attributes.normals[i]));
-            const double angle = glm::degrees(std::acos(std::min(1.0, cosine)));
+            // By the sine: the cosine of small angles says little. A missing normal is 90 degrees
+            // off.
+            const glm::dvec3 normal(found.attributes.normals[i]);
+            const double sine = glm::length(glm::cross(glm::normalize(mean), normal));
+            const double angle =
+                glm::dot(mean, normal) > 0.0 ? glm::degrees(std::asin(std::min(1.0, sine))) : 90.0;
             // 12 bits of each hit's components, and what they and the areas may turn a mean shorter
             // than 1 by.
             const double turn = (std::sqrt(3.0) * 0.5 / 2047.0 + 2.0 * doubt) / glm::length(mean);
