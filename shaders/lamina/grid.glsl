@@ -4,15 +4,19 @@
 //   #define LAMINA_GRID_BLOCK_BINDING 3    // uniform buffers 3, 4 (default 0)
 //   #define LAMINA_GRID_TEXTURE_UNIT 5     // texture units 5, 6 (default 0)
 //   #define LAMINA_GRID_BUFFER_STORE 1     // all of them in buffers (VoxelGrid::store()), default 0
+//   #define LAMINA_GRID_LOCAL_RANGES 1     // some may have local ranges (near/far maps), default 0
+//   #define LAMINA_GRID_RANGE_UNIT 9       // their texture units 9, 10 (default: 8 after those above)
 //   #include <lamina/grid.glsl>
 //
-// VoxelGrid::bind() puts grid number g on uniform buffer LAMINA_GRID_BLOCK_BINDING + g and texture
-// unit LAMINA_GRID_TEXTURE_UNIT + g. Below, `grid` is that number g: a constant or dynamically uniform
+// VoxelGrid::bind() puts grid number g on uniform buffer LAMINA_GRID_BLOCK_BINDING + g, texture unit
+// LAMINA_GRID_TEXTURE_UNIT + g and, with local ranges, LAMINA_GRID_RANGE_UNIT + g. Below, `grid` is that number g: a constant or dynamically uniform
 // expression. World points are in world units, columns in pixels of the grid's camera.
 //
 // Precision: single. A point within about 1e-6 of the grid's extent from a voxel's face may answer for
-// the voxel on the other side.
+// the voxel on the other side; where a column's own range is shorter than that,
+// its slices cannot be told apart.
 // permute LAMINA_GRID_BUFFER_STORE = 0 1
+// permute LAMINA_GRID_LOCAL_RANGES = 0 1
 #ifndef LAMINA_GRID_GLSL
 #define LAMINA_GRID_GLSL
 
@@ -30,6 +34,12 @@
 #ifndef LAMINA_GRID_BUFFER_STORE
 #define LAMINA_GRID_BUFFER_STORE 0
 #endif
+#ifndef LAMINA_GRID_LOCAL_RANGES
+#define LAMINA_GRID_LOCAL_RANGES 0
+#endif
+#ifndef LAMINA_GRID_RANGE_UNIT
+#define LAMINA_GRID_RANGE_UNIT (LAMINA_GRID_TEXTURE_UNIT + LAMINA_GRID_DEFAULT_RANGE_UNIT)
+#endif
 
 layout(std140, binding = LAMINA_GRID_BLOCK_BINDING) uniform LaminaGridBlock {
     LaminaGridConstants constants;
@@ -38,10 +48,12 @@ layout(std140, binding = LAMINA_GRID_BLOCK_BINDING) uniform LaminaGridBlock {
 
 #if LAMINA_GRID_BUFFER_STORE
 layout(binding = LAMINA_GRID_TEXTURE_UNIT) uniform usamplerBuffer laminaGridWords[LAMINA_GRID_COUNT];
-#define LAMINA_FETCH_WORD(words) texelFetch(words, texel)
 #else
 layout(binding = LAMINA_GRID_TEXTURE_UNIT) uniform usampler2DArray laminaGridWords[LAMINA_GRID_COUNT];
-#define LAMINA_FETCH_WORD(words) texelFetch(words, texel, 0)
+#endif
+
+#if LAMINA_GRID_LOCAL_RANGES
+layout(binding = LAMINA_GRID_RANGE_UNIT) uniform sampler2D laminaGridRanges[LAMINA_GRID_COUNT];
 #endif
 
 // Columns in x, columns in y, slices.
@@ -49,12 +61,90 @@ uvec3 laminaGridSize(int grid) {
     return laminaGrid[grid].constants.size.xyz;
 }
 
-// Continuous slice coordinate of a depth in [0, slices]; clamped.
-float laminaSliceCoordinate(int grid, float depth) {
-    vec4 range = laminaGrid[grid].constants.depthRange;
-    float fraction = clamp((depth - range.x) * range.z, 0.0, 1.0);
+// Evaluates FETCH(g) for the constant g that equals `grid`. Samplers are chosen by comparisons: llvmpipe
+// (Mesa 22.3) fetches wrongly by a dynamic sampler index (it changes bits of integer texels that form a
+// signalling NaN, and with two arrays of samplers takes the wrong one).
+#if LAMINA_GRID_COUNT > 8
+#error "lamina/grid.glsl: LAMINA_GRID_COUNT is at most 8"
+#endif
+#define LAMINA_RETURN_IF_GRID_1(FETCH) return FETCH(0);
+#if LAMINA_GRID_COUNT > 1
+#define LAMINA_RETURN_IF_GRID_2(FETCH) if (grid == 1) return FETCH(1); LAMINA_RETURN_IF_GRID_1(FETCH)
+#else
+#define LAMINA_RETURN_IF_GRID_2(FETCH) LAMINA_RETURN_IF_GRID_1(FETCH)
+#endif
+#if LAMINA_GRID_COUNT > 2
+#define LAMINA_RETURN_IF_GRID_3(FETCH) if (grid == 2) return FETCH(2); LAMINA_RETURN_IF_GRID_2(FETCH)
+#else
+#define LAMINA_RETURN_IF_GRID_3(FETCH) LAMINA_RETURN_IF_GRID_2(FETCH)
+#endif
+#if LAMINA_GRID_COUNT > 3
+#define LAMINA_RETURN_IF_GRID_4(FETCH) if (grid == 3) return FETCH(3); LAMINA_RETURN_IF_GRID_3(FETCH)
+#else
+#define LAMINA_RETURN_IF_GRID_4(FETCH) LAMINA_RETURN_IF_GRID_3(FETCH)
+#endif
+#if LAMINA_GRID_COUNT > 4
+#define LAMINA_RETURN_IF_GRID_5(FETCH) if (grid == 4) return FETCH(4); LAMINA_RETURN_IF_GRID_4(FETCH)
+#else
+#define LAMINA_RETURN_IF_GRID_5(FETCH) LAMINA_RETURN_IF_GRID_4(FETCH)
+#endif
+#if LAMINA_GRID_COUNT > 5
+#define LAMINA_RETURN_IF_GRID_6(FETCH) if (grid == 5) return FETCH(5); LAMINA_RETURN_IF_GRID_5(FETCH)
+#else
+#define LAMINA_RETURN_IF_GRID_6(FETCH) LAMINA_RETURN_IF_GRID_5(FETCH)
+#endif
+#if LAMINA_GRID_COUNT > 6
+#define LAMINA_RETURN_IF_GRID_7(FETCH) if (grid == 6) return FETCH(6); LAMINA_RETURN_IF_GRID_6(FETCH)
+#else
+#define LAMINA_RETURN_IF_GRID_7(FETCH) LAMINA_RETURN_IF_GRID_6(FETCH)
+#endif
+#if LAMINA_GRID_COUNT > 7
+#define LAMINA_RETURN_IF_GRID_8(FETCH) if (grid == 7) return FETCH(7); LAMINA_RETURN_IF_GRID_7(FETCH)
+#else
+#define LAMINA_RETURN_IF_GRID_8(FETCH) LAMINA_RETURN_IF_GRID_7(FETCH)
+#endif
+
+// One texel of a grid: column (x, y), layer z.
+uvec4 laminaFetchWord(int grid, ivec3 place) {
+#if LAMINA_GRID_BUFFER_STORE
+    ivec2 columns = ivec2(laminaGrid[grid].constants.size.xy);
+    int texel = (place.z * columns.y + place.y) * columns.x + place.x;
+#define LAMINA_FETCH_WORD(g) texelFetch(laminaGridWords[g], texel)
+#else
+#define LAMINA_FETCH_WORD(g) texelFetch(laminaGridWords[g], place, 0)
+#endif
+    LAMINA_RETURN_IF_GRID_8(LAMINA_FETCH_WORD)
+}
+
+#if LAMINA_GRID_LOCAL_RANGES
+// One texel of a grid's near/far map.
+vec2 laminaFetchRange(int grid, ivec2 column) {
+#define LAMINA_FETCH_RANGE(g) texelFetch(laminaGridRanges[g], column, 0).xy
+    LAMINA_RETURN_IF_GRID_8(LAMINA_FETCH_RANGE)
+}
+#endif
+
+// The depths that the slices of a column divide, near and far; near > far in an empty column of a grid
+// with local ranges, and outside the columns of such a grid.
+vec2 laminaColumnRange(int grid, ivec2 column) {
+    LaminaGridConstants constants = laminaGrid[grid].constants;
+#if LAMINA_GRID_LOCAL_RANGES
+    if ((constants.size.w & LAMINA_GRID_LOCAL) != 0u) {
+        if (any(lessThan(column, ivec2(0))) || any(greaterThanEqual(column, ivec2(constants.size.xy))))
+            return vec2(1.0, -1.0) * LAMINA_EMPTY_COLUMN;
+        return vec2(1.0, -1.0) * laminaFetchRange(grid, column);
+    }
+#endif
+    return constants.depthRange.xy;
+}
+
+// Continuous slice coordinate of a depth in [0, slices], clamped, where the slices divide `range`, a
+// laminaColumnRange(); 0 in a range of no extent.
+float laminaSliceCoordinate(int grid, vec2 range, float depth) {
+    float extent = range.y - range.x;
+    float fraction = extent > 0.0 ? clamp((depth - range.x) / extent, 0.0, 1.0) : 0.0;
     if ((laminaGrid[grid].constants.size.w & LAMINA_GRID_CUSTOM_SLICES) == 0u)
-        return fraction * range.w;
+        return fraction * laminaGrid[grid].constants.depthRange.w;
     int low = 0;
     int high = int(laminaGrid[grid].constants.size.z);
     while (high - low > 1) {
@@ -69,62 +159,40 @@ float laminaSliceCoordinate(int grid, float depth) {
     return float(low) + clamp((fraction - front) / (back - front), 0.0, 1.0);
 }
 
-// Continuous grid coordinates of a world point: columns x, y, slice. z is clamped to [0, slices];
-// `inside` tells whether the point lies in the grid.
-vec3 laminaWorldToGrid(int grid, vec3 world, out bool inside) {
-    LaminaGridConstants constants = laminaGrid[grid].constants;
-    vec4 point = vec4(world, 1.0);
-    float depth = dot(constants.worldToColumn[2], point);
-    float w = (constants.size.w & LAMINA_GRID_PERSPECTIVE) != 0u ? depth : 1.0;
-    vec2 column = vec2(dot(constants.worldToColumn[0], point), dot(constants.worldToColumn[1], point)) / w;
-    vec2 columns = vec2(constants.size.xy);
-    inside = w > 0.0 && depth >= constants.depthRange.x && depth <= constants.depthRange.y &&
-             all(greaterThanEqual(column, vec2(0.0))) && all(lessThanEqual(column, columns));
-    return vec3(column, laminaSliceCoordinate(grid, depth));
+// The same in a column without a range of its own.
+float laminaSliceCoordinate(int grid, float depth) {
+    return laminaSliceCoordinate(grid, laminaGrid[grid].constants.depthRange.xy, depth);
 }
 
-// One texel of a grid: column (x, y), layer z. The sampler is chosen by comparisons: llvmpipe (Mesa
-// 22.3) changes bits of integer texels, where they form a signalling NaN, fetched by a dynamic sampler
-// index.
-uvec4 laminaFetchWord(int grid, ivec3 place) {
-#if LAMINA_GRID_COUNT > 8
-#error "lamina/grid.glsl: LAMINA_GRID_COUNT is at most 8"
-#endif
-#if LAMINA_GRID_BUFFER_STORE
-    ivec2 columns = ivec2(laminaGrid[grid].constants.size.xy);
-    int texel = (place.z * columns.y + place.y) * columns.x + place.x;
-#else
-    ivec3 texel = place;
-#endif
-#if LAMINA_GRID_COUNT > 7
-    if (grid == 7)
-        return LAMINA_FETCH_WORD(laminaGridWords[7]);
-#endif
-#if LAMINA_GRID_COUNT > 6
-    if (grid == 6)
-        return LAMINA_FETCH_WORD(laminaGridWords[6]);
-#endif
-#if LAMINA_GRID_COUNT > 5
-    if (grid == 5)
-        return LAMINA_FETCH_WORD(laminaGridWords[5]);
-#endif
-#if LAMINA_GRID_COUNT > 4
-    if (grid == 4)
-        return LAMINA_FETCH_WORD(laminaGridWords[4]);
-#endif
-#if LAMINA_GRID_COUNT > 3
-    if (grid == 3)
-        return LAMINA_FETCH_WORD(laminaGridWords[3]);
-#endif
-#if LAMINA_GRID_COUNT > 2
-    if (grid == 2)
-        return LAMINA_FETCH_WORD(laminaGridWords[2]);
-#endif
-#if LAMINA_GRID_COUNT > 1
-    if (grid == 1)
-        return LAMINA_FETCH_WORD(laminaGridWords[1]);
-#endif
-    return LAMINA_FETCH_WORD(laminaGridWords[0]);
+// Where a world point stands in a grid.
+struct LaminaGridPoint {
+    vec2 column;    // Continuous.
+    float depth;    // World units.
+    vec2 range;     // laminaColumnRange() of the column.
+    bool isInside;  // Within the columns, and in front of a perspective grid's eye.
+};
+
+LaminaGridPoint laminaGridPoint(int grid, vec3 world) {
+    LaminaGridConstants constants = laminaGrid[grid].constants;
+    vec4 point = vec4(world, 1.0);
+    LaminaGridPoint place;
+    place.depth = dot(constants.worldToColumn[2], point);
+    float w = (constants.size.w & LAMINA_GRID_PERSPECTIVE) != 0u ? place.depth : 1.0;
+    place.column = vec2(dot(constants.worldToColumn[0], point), dot(constants.worldToColumn[1], point)) / w;
+    vec2 columns = vec2(constants.size.xy);
+    place.isInside = w > 0.0 && all(greaterThanEqual(place.column, vec2(0.0))) &&
+                     all(lessThanEqual(place.column, columns));
+    vec2 inner = clamp(floor(place.column), vec2(0.0), columns - 1.0);
+    place.range = laminaColumnRange(grid, ivec2(inner));
+    return place;
+}
+
+// Continuous grid coordinates of a world point: columns x, y, slice. z is clamped to [0, slices];
+// `inside` tells whether the point lies in the grid, and in the column's own range where it has one.
+vec3 laminaWorldToGrid(int grid, vec3 world, out bool inside) {
+    LaminaGridPoint place = laminaGridPoint(grid, world);
+    inside = place.isInside && place.depth >= place.range.x && place.depth <= place.range.y;
+    return vec3(place.column, laminaSliceCoordinate(grid, place.range, place.depth));
 }
 
 // The 128 bits of slices [128 group, 128 group + 128) of a column: bit (k & 31) of component
@@ -184,19 +252,16 @@ bool laminaPointSet(int grid, vec3 world) {
 }
 
 // Set voxels nearer to the grid's camera than the slice that holds a world point, in the point's
-// column ([ED06] 3.1). 0 for points before the near depth or outside the columns; all of the column's
-// voxels for points beyond the far depth.
+// column ([ED06] 3.1). 0 for points before the column's near depth or outside the columns, without
+// reading a voxel; all of the column's voxels for points beyond its far depth.
 int laminaPointCountNearer(int grid, vec3 world) {
-    LaminaGridConstants constants = laminaGrid[grid].constants;
-    bool inside;
-    vec3 point = laminaWorldToGrid(grid, world, inside);
-    float depth = dot(constants.worldToColumn[2], vec4(world, 1.0));
-    if (depth < constants.depthRange.x || any(lessThan(point.xy, vec2(0.0))) ||
-        any(greaterThan(point.xy, vec2(constants.size.xy))))
+    LaminaGridPoint place = laminaGridPoint(grid, world);
+    if (!place.isInside || place.depth < place.range.x || place.range.x > place.range.y)
         return 0;
-    ivec3 voxel = laminaVoxelOf(grid, point);
-    int slice = depth > constants.depthRange.y ? int(constants.size.z) : voxel.z;
-    return laminaCountNearer(grid, voxel.xy, slice);
+    float slice = laminaSliceCoordinate(grid, place.range, place.depth);
+    ivec3 voxel = laminaVoxelOf(grid, vec3(place.column, slice));
+    return laminaCountNearer(grid, voxel.xy,
+                             place.depth > place.range.y ? int(laminaGrid[grid].constants.size.z) : voxel.z);
 }
 
 #endif

@@ -2,6 +2,9 @@
 
 #include "gl/device_state.hpp"
 
+#include <glm/vec3.hpp>
+
+#include <initializer_list>
 #include <string>
 
 namespace lamina::gl {
@@ -149,57 +152,37 @@ Result<Buffer> createBuffer(const std::shared_ptr<DeviceState>& device, std::uin
     return buffer;
 }
 
-Result<Texture> createTextureArray(const std::shared_ptr<DeviceState>& device,
-                                   GLenum internalFormat, std::uint32_t bytesPerTexel,
-                                   std::uint32_t width, std::uint32_t height, std::uint32_t layers,
-                                   std::string_view operation, std::string_view label) {
-    const DeviceLimits& limits = device->limits;
-    if (width > limits.maxTextureSize || height > limits.maxTextureSize ||
-        layers > limits.maxArrayTextureLayers)
-        return Error{ErrorCode::DeviceLimit,
-                     std::string(operation) + ": needs a texture of " + std::to_string(width) +
-                         " x " + std::to_string(height) + " x " + std::to_string(layers) +
-                         " layers, the device's limit is " + std::to_string(limits.maxTextureSize) +
-                         " x " + std::to_string(limits.maxTextureSize) + " x " +
-                         std::to_string(limits.maxArrayTextureLayers) + "; use a smaller grid"};
-    const std::uint64_t bytes = std::uint64_t{bytesPerTexel} * width * height * layers;
-    if (auto fits = checkBudget(*device, bytes, operation); !fits)
-        return fits.error();
-    Texture texture = Texture::create(device, label, GL_TEXTURE_2D_ARRAY);
-    const auto stored = allocate(*device, bytes, operation, [&] {
-        device->gl.TextureStorage3D(texture.id(), 1, internalFormat, static_cast<GLsizei>(width),
-                                    static_cast<GLsizei>(height), static_cast<GLsizei>(layers));
-    });
-    if (!stored)
-        return stored.error();
-    texture.setBytes(bytes);
-    device->gl.TextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    device->gl.TextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    device->gl.TextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    device->gl.TextureParameteri(texture.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    return texture;
-}
+namespace {
 
-Result<Texture> createTexture3d(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
-                                std::uint32_t bytesPerTexel, std::uint32_t width,
-                                std::uint32_t height, std::uint32_t depth,
-                                std::string_view operation, std::string_view label) {
-    GLint limit = 0;
-    device->gl.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
-    if (const auto most = static_cast<std::uint32_t>(limit);
-        width > most || height > most || depth > most)
-        return Error{ErrorCode::DeviceLimit,
-                     std::string(operation) + ": needs a 3D texture of " + std::to_string(width) +
-                         " x " + std::to_string(height) + " x " + std::to_string(depth) +
-                         ", the device's limit is " + std::to_string(most) +
-                         " each way; use a smaller grid"};
-    const std::uint64_t bytes = std::uint64_t{bytesPerTexel} * width * height * depth;
+/// Size of a texture, and the most of it that the device can do, in the error's words.
+struct TextureShape {
+    GLenum target = GL_TEXTURE_2D;
+    glm::uvec3 size{1};
+    glm::uvec3 limit{1};
+    std::string description; ///< Of the size.
+    std::string limitDescription;
+};
+
+Result<Texture> createTexture(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
+                              std::uint32_t bytesPerTexel, const TextureShape& shape,
+                              std::string_view operation, std::string_view label) {
+    const glm::uvec3 size = shape.size;
+    if (size.x > shape.limit.x || size.y > shape.limit.y || size.z > shape.limit.z)
+        return Error{ErrorCode::DeviceLimit, std::string(operation) + ": needs a " +
+                                                 shape.description + ", the device's limit is " +
+                                                 shape.limitDescription + "; use a smaller grid"};
+    const std::uint64_t bytes = std::uint64_t{bytesPerTexel} * size.x * size.y * size.z;
     if (auto fits = checkBudget(*device, bytes, operation); !fits)
         return fits.error();
-    Texture texture = Texture::create(device, label, GL_TEXTURE_3D);
+    Texture texture = Texture::create(device, label, shape.target);
+    const auto width = static_cast<GLsizei>(size.x);
+    const auto height = static_cast<GLsizei>(size.y);
     const auto stored = allocate(*device, bytes, operation, [&] {
-        device->gl.TextureStorage3D(texture.id(), 1, internalFormat, static_cast<GLsizei>(width),
-                                    static_cast<GLsizei>(height), static_cast<GLsizei>(depth));
+        if (shape.target == GL_TEXTURE_2D)
+            device->gl.TextureStorage2D(texture.id(), 1, internalFormat, width, height);
+        else
+            device->gl.TextureStorage3D(texture.id(), 1, internalFormat, width, height,
+                                        static_cast<GLsizei>(size.z));
     });
     if (!stored)
         return stored.error();
@@ -209,6 +192,60 @@ Result<Texture> createTexture3d(const std::shared_ptr<DeviceState>& device, GLen
     for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
         device->gl.TextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
     return texture;
+}
+
+std::string product(std::initializer_list<std::uint32_t> factors) {
+    std::string text;
+    for (const std::uint32_t factor : factors)
+        text += (text.empty() ? "" : " x ") + std::to_string(factor);
+    return text;
+}
+
+} // namespace
+
+Result<Texture> createTexture2d(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
+                                std::uint32_t bytesPerTexel, std::uint32_t width,
+                                std::uint32_t height, std::string_view operation,
+                                std::string_view label) {
+    const std::uint32_t limit = device->limits.maxTextureSize;
+    return createTexture(device, internalFormat, bytesPerTexel,
+                         {GL_TEXTURE_2D,
+                          {width, height, 1},
+                          {limit, limit, 1},
+                          "texture of " + product({width, height}),
+                          product({limit, limit})},
+                         operation, label);
+}
+
+Result<Texture> createTextureArray(const std::shared_ptr<DeviceState>& device,
+                                   GLenum internalFormat, std::uint32_t bytesPerTexel,
+                                   std::uint32_t width, std::uint32_t height, std::uint32_t layers,
+                                   std::string_view operation, std::string_view label) {
+    const std::uint32_t limit = device->limits.maxTextureSize;
+    const std::uint32_t layerLimit = device->limits.maxArrayTextureLayers;
+    return createTexture(device, internalFormat, bytesPerTexel,
+                         {GL_TEXTURE_2D_ARRAY,
+                          {width, height, layers},
+                          {limit, limit, layerLimit},
+                          "texture of " + product({width, height, layers}) + " layers",
+                          product({limit, limit, layerLimit})},
+                         operation, label);
+}
+
+Result<Texture> createTexture3d(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
+                                std::uint32_t bytesPerTexel, std::uint32_t width,
+                                std::uint32_t height, std::uint32_t depth,
+                                std::string_view operation, std::string_view label) {
+    GLint limit = 0;
+    device->gl.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limit);
+    const auto most = static_cast<std::uint32_t>(limit);
+    return createTexture(device, internalFormat, bytesPerTexel,
+                         {GL_TEXTURE_3D,
+                          {width, height, depth},
+                          glm::uvec3(most),
+                          "3D texture of " + product({width, height, depth}),
+                          std::to_string(most) + " each way"},
+                         operation, label);
 }
 
 } // namespace lamina::gl

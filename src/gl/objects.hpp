@@ -115,6 +115,14 @@ using TransformFeedback = Object<ObjectKind::TransformFeedback>;
 createBuffer(const std::shared_ptr<DeviceState>& device, std::uint64_t bytes, const void* data,
              GLbitfield storageFlags, std::string_view operation, std::string_view label);
 
+/// A one-level 2D texture with nearest filtering and clamped edges. bytesPerTexel: of
+/// `internalFormat`.
+/// Errors: DeviceLimit, OutOfMemory.
+[[nodiscard]] LAMINA_API Result<Texture>
+createTexture2d(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
+                std::uint32_t bytesPerTexel, std::uint32_t width, std::uint32_t height,
+                std::string_view operation, std::string_view label);
+
 /// A one-level 2D array texture with nearest filtering. bytesPerTexel: of `internalFormat`.
 /// Errors: DeviceLimit, OutOfMemory.
 [[nodiscard]] LAMINA_API Result<Texture>

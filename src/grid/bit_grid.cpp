@@ -1,6 +1,7 @@
 #include <lamina/grid/bit_grid.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <numeric>
 
@@ -23,9 +24,56 @@ Result<BitGrid> BitGrid::create(const GridTransform& transform) {
     return grid;
 }
 
+Result<BitGrid> BitGrid::create(const GridTransform& transform, std::vector<ColumnRange> ranges) {
+    const std::size_t columns = std::size_t{transform.size().x} * transform.size().y;
+    if (ranges.size() != columns)
+        return Error{ErrorCode::InvalidArgument, "bit grid: expected a range for each of " +
+                                                     std::to_string(columns) + " columns, found " +
+                                                     std::to_string(ranges.size())};
+    auto grid = create(transform);
+    if (grid)
+        grid->mRanges = std::move(ranges);
+    return grid;
+}
+
+ColumnRange BitGrid::columnRange(const glm::uvec2& column) const {
+    assert(column.x < size().x && column.y < size().y);
+    if (hasLocalRanges())
+        return mRanges[std::size_t{column.y} * size().x + column.x];
+    return {static_cast<float>(mTransform.nearDepth()), static_cast<float>(mTransform.farDepth())};
+}
+
+double BitGrid::depthAt(const glm::uvec2& column, double sliceCoordinate) const {
+    return hasLocalRanges() ? mTransform.depthAtSlice(sliceCoordinate, columnRange(column))
+                            : mTransform.depthAtSlice(sliceCoordinate);
+}
+
+std::optional<glm::uvec3> BitGrid::voxelAt(const glm::dvec3& world) const {
+    if (!hasLocalRanges())
+        return mTransform.voxelAt(world);
+    const auto place = mTransform.columnAt(world);
+    if (!place)
+        return std::nullopt;
+    const auto slice = mTransform.sliceAt(place->depth, columnRange(place->column));
+    if (!slice)
+        return std::nullopt;
+    return glm::uvec3(place->column, *slice);
+}
+
 bool BitGrid::at(const glm::dvec3& world) const {
-    const auto voxel = mTransform.voxelAt(world);
+    const auto voxel = voxelAt(world);
     return voxel && test(*voxel);
+}
+
+std::uint32_t BitGrid::countNearer(const glm::dvec3& world) const {
+    if (const auto voxel = voxelAt(world))
+        return countNearer({voxel->x, voxel->y}, voxel->z);
+    const auto place = mTransform.columnAt(world);
+    if (!place)
+        return 0;
+    const bool isBeyond = hasLocalRanges() ? place->depth > columnRange(place->column).far
+                                           : place->depth > mTransform.farDepth();
+    return isBeyond ? countNearer(place->column, size().z) : 0;
 }
 
 std::uint64_t BitGrid::count() const {
@@ -48,10 +96,12 @@ std::uint32_t BitGrid::countNearer(const glm::uvec2& column, std::uint32_t slice
 
 Result<BitGrid> BitGrid::reoriented(Axis axis) const {
     const auto from = mTransform.boxAxis();
-    if (!from || mTransform.distribution().kind() != SliceDistribution::Kind::Linear)
+    if (hasLocalRanges() || !from ||
+        mTransform.distribution().kind() != SliceDistribution::Kind::Linear)
         return Error{ErrorCode::InvalidArgument,
                      "bit grid: expected a box grid with linear slices to reorient, found " +
-                         mTransform.describe()};
+                         mTransform.describe() +
+                         (hasLocalRanges() ? " with local ranges; use toUniform() first" : "")};
     if (*from == axis)
         return *this;
     const glm::uvec3 fromAxes = boxGridAxes(*from);
@@ -70,6 +120,28 @@ Result<BitGrid> BitGrid::reoriented(Axis axis) const {
         for (int i = 0; i < 3; ++i)
             world[fromAxes[i]] = voxel[i];
         target->set({world[toAxes.x], world[toAxes.y], world[toAxes.z]});
+    });
+    return target;
+}
+
+Result<BitGrid> BitGrid::toUniform(std::uint32_t slices) const {
+    auto transform = mTransform.withSlices(slices);
+    if (!transform)
+        return transform.error();
+    auto target = create(*transform);
+    if (!target)
+        return target;
+    // Rounding alone must not reach into a neighbour that a voxel only touches.
+    constexpr double kRounding = 1e-9;
+    const double last = slices - 1;
+    forEachSet([&](const glm::uvec3& voxel) {
+        const glm::uvec2 column(voxel);
+        const double front = transform->sliceCoordinate(depthAt(column, voxel.z));
+        const double back = transform->sliceCoordinate(depthAt(column, voxel.z + 1.0));
+        const double low = std::clamp(std::floor(front + kRounding), 0.0, last);
+        const double high = std::clamp(std::ceil(back - kRounding) - 1.0, low, last);
+        for (auto k = static_cast<std::uint32_t>(low); k <= static_cast<std::uint32_t>(high); ++k)
+            target->set({column, k});
     });
     return target;
 }

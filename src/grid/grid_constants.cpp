@@ -15,7 +15,7 @@ std::uint32_t gridFlags(const GridTransform& transform) {
     return flags;
 }
 
-GridBlock makeGridBlock(const GridTransform& transform) {
+GridBlock makeGridBlock(const GridTransform& transform, bool hasLocalRanges) {
     GridBlock block;
     const glm::dmat4 rows = glm::transpose(transform.worldToColumn());
     for (int row = 0; row < 3; ++row)
@@ -24,7 +24,8 @@ GridBlock makeGridBlock(const GridTransform& transform) {
     const double far = transform.farDepth();
     block.constants.depthRange =
         glm::vec4(glm::dvec4(near, far, 1.0 / (far - near), transform.size().z));
-    block.constants.size = glm::uvec4(transform.size(), gridFlags(transform));
+    block.constants.size = glm::uvec4(
+        transform.size(), gridFlags(transform) | (hasLocalRanges ? LAMINA_GRID_LOCAL : 0));
     std::ranges::copy(transform.sliceBoundaries(), block.boundaries.begin());
     return block;
 }

@@ -32,7 +32,8 @@ static_assert(offsetof(shared::LaminaDrawConstants, depthRange) == 96 &&
                   offsetof(shared::LaminaDrawConstants, dilation) == 192,
               "std140");
 
-[[nodiscard]] GridBlock makeGridBlock(const GridTransform& transform);
+/// hasLocalRanges: sets LAMINA_GRID_LOCAL.
+[[nodiscard]] GridBlock makeGridBlock(const GridTransform& transform, bool hasLocalRanges = false);
 
 /// LAMINA_GRID_* flags of a grid.
 [[nodiscard]] std::uint32_t gridFlags(const GridTransform& transform);

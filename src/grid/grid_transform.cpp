@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 
@@ -252,15 +253,25 @@ Result<void> GridTransform::setDistribution(const SliceDistribution& distributio
     return {};
 }
 
-double GridTransform::sliceCoordinate(double depth) const {
+namespace {
+
+/// Where a depth stands in a range, 0 to 1; anywhere in a range of no extent is its front.
+double fractionOf(double depth, const ColumnRange& range) {
+    const double near = range.near;
+    const double extent = range.far - near;
+    return extent > 0.0 ? (depth - near) / extent : 0.0;
+}
+
+} // namespace
+
+double GridTransform::sliceCoordinateOf(double fraction) const {
     const double slices = mSize.z;
-    if (mBoundaries.empty())
-        return (depth - mNear) * (slices / (mFar - mNear));
-    const double fraction = (depth - mNear) * (1.0 / (mFar - mNear));
     if (!(fraction > 0.0))
         return 0.0;
     if (fraction >= 1.0)
         return slices;
+    if (mBoundaries.empty())
+        return fraction * slices;
     const auto upper =
         std::upper_bound(mBoundaries.begin(), mBoundaries.end(), fraction,
                          [](double value, float boundary) { return value < boundary; });
@@ -269,20 +280,41 @@ double GridTransform::sliceCoordinate(double depth) const {
     return static_cast<double>(k) + (fraction - low) / (mBoundaries[k + 1] - low);
 }
 
-double GridTransform::depthAtSlice(double sliceCoordinate) const {
-    const double slices = mSize.z;
-    const double s = std::clamp(sliceCoordinate, 0.0, slices);
+double GridTransform::sliceCoordinate(double depth) const {
     if (mBoundaries.empty())
-        return mNear + s * ((mFar - mNear) / slices);
-    const auto k = std::min(static_cast<std::size_t>(s), static_cast<std::size_t>(mSize.z) - 1);
-    const double low = mBoundaries[k];
-    const double fraction = low + (s - static_cast<double>(k)) * (mBoundaries[k + 1] - low);
-    return mNear + fraction * (mFar - mNear);
+        return (depth - mNear) * (mSize.z / (mFar - mNear));
+    return sliceCoordinateOf((depth - mNear) * (1.0 / (mFar - mNear)));
 }
 
-std::optional<std::uint32_t> GridTransform::sliceAt(double depth) const {
-    // The same steps as laminaSliceAt() in lamina/slice_distribution.glsl.
-    const double fraction = (depth - mNear) * (1.0 / (mFar - mNear));
+double GridTransform::sliceCoordinate(double depth, const ColumnRange& range) const {
+    assert(!range.isEmpty());
+    return sliceCoordinateOf(fractionOf(depth, range));
+}
+
+double GridTransform::fractionAtSlice(double sliceCoordinate) const {
+    const double s = std::clamp(sliceCoordinate, 0.0, static_cast<double>(mSize.z));
+    if (mBoundaries.empty())
+        return s / mSize.z;
+    const auto k = std::min(static_cast<std::size_t>(s), static_cast<std::size_t>(mSize.z) - 1);
+    const double low = mBoundaries[k];
+    return low + (s - static_cast<double>(k)) * (mBoundaries[k + 1] - low);
+}
+
+double GridTransform::depthAtSlice(double sliceCoordinate) const {
+    if (mBoundaries.empty())
+        return mNear + std::clamp(sliceCoordinate, 0.0, static_cast<double>(mSize.z)) *
+                           ((mFar - mNear) / mSize.z);
+    return mNear + fractionAtSlice(sliceCoordinate) * (mFar - mNear);
+}
+
+double GridTransform::depthAtSlice(double sliceCoordinate, const ColumnRange& range) const {
+    assert(!range.isEmpty());
+    const double near = range.near;
+    return near + fractionAtSlice(sliceCoordinate) * (range.far - near);
+}
+
+std::optional<std::uint32_t> GridTransform::sliceOf(double fraction) const {
+    // The same steps as laminaSliceOf() in lamina/slice_distribution.glsl.
     if (!(fraction >= -LAMINA_DEPTH_SNAP && fraction <= 1.0 + LAMINA_DEPTH_SNAP))
         return std::nullopt;
     const double snapped = std::max(fraction + LAMINA_DEPTH_SNAP, 0.0);
@@ -292,6 +324,32 @@ std::optional<std::uint32_t> GridTransform::sliceAt(double depth) const {
         std::upper_bound(mBoundaries.begin(), mBoundaries.end(), snapped,
                          [](double value, float boundary) { return value < boundary; });
     return std::min(static_cast<std::uint32_t>(upper - mBoundaries.begin()) - 1, mSize.z - 1);
+}
+
+std::optional<std::uint32_t> GridTransform::sliceAt(double depth) const {
+    return sliceOf((depth - mNear) * (1.0 / (mFar - mNear)));
+}
+
+std::optional<std::uint32_t> GridTransform::sliceAt(double depth, const ColumnRange& range) const {
+    // The same steps as localSlices() in voxelize/slicemap.frag.
+    const double rounding = (mFar - mNear) * LAMINA_DEPTH_SNAP;
+    const double near = range.near;
+    const double far = range.far;
+    if (range.isEmpty() || !(depth >= near - rounding && depth <= far + rounding))
+        return std::nullopt;
+    return sliceOf(fractionOf(std::clamp(depth, near, far), range));
+}
+
+Result<GridTransform> GridTransform::withSlices(std::uint32_t slices,
+                                                const SliceDistribution& distribution) const {
+    GridTransform transform = *this;
+    transform.mSize.z = slices;
+    transform.mBoundaries.clear();
+    if (auto checked = checkSize(transform.mSize); !checked)
+        return checked.error();
+    if (auto set = transform.setDistribution(distribution); !set)
+        return set.error();
+    return transform;
 }
 
 glm::dvec3 GridTransform::worldToGrid(const glm::dvec3& world) const {
@@ -308,17 +366,25 @@ glm::dvec3 GridTransform::gridToWorld(const glm::dvec3& grid) const {
     return glm::dvec3(mColumnToWorld * glm::dvec4(grid.x * w, grid.y * w, depth, 1.0));
 }
 
-std::optional<glm::uvec3> GridTransform::voxelAt(const glm::dvec3& world) const {
+std::optional<ColumnPlace> GridTransform::columnAt(const glm::dvec3& world) const {
     const glm::dvec4 h = mWorldToColumn * glm::dvec4(world, 1.0);
     if (!(h.w > 0.0))
         return std::nullopt;
-    const auto slice = sliceAt(h.z);
     const double x = h.x / h.w;
     const double y = h.y / h.w;
-    if (!slice || !(x >= 0.0 && x <= mSize.x && y >= 0.0 && y <= mSize.y))
+    if (!(x >= 0.0 && x <= mSize.x && y >= 0.0 && y <= mSize.y))
         return std::nullopt;
-    return glm::uvec3(std::min(static_cast<std::uint32_t>(x), mSize.x - 1),
-                      std::min(static_cast<std::uint32_t>(y), mSize.y - 1), *slice);
+    return ColumnPlace{{std::min(static_cast<std::uint32_t>(x), mSize.x - 1),
+                        std::min(static_cast<std::uint32_t>(y), mSize.y - 1)},
+                       h.z};
+}
+
+std::optional<glm::uvec3> GridTransform::voxelAt(const glm::dvec3& world) const {
+    const auto place = columnAt(world);
+    const auto slice = place ? sliceAt(place->depth) : std::nullopt;
+    if (!slice)
+        return std::nullopt;
+    return glm::uvec3(place->column, *slice);
 }
 
 std::string GridTransform::describe() const {

@@ -11,6 +11,11 @@ namespace lamina::detail {
 
 Result<BoxVoxels> BoxVoxels::create(const BitGrid& grid, const AttributeGrid* attributes) {
     const GridTransform& transform = grid.transform();
+    if (grid.hasLocalRanges())
+        return Error{ErrorCode::Unsupported,
+                     "voxels: expected one range of depths for all columns, found a " +
+                         transform.describe() +
+                         " grid with local ranges; resample it by BitGrid::toUniform()"};
     if (!transform.boxAxis() || transform.distribution().kind() != SliceDistribution::Kind::Linear)
         return Error{ErrorCode::Unsupported,
                      "voxels: expected a grid over a world box with slices of equal depth, found " +

@@ -9,6 +9,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -18,7 +19,7 @@ namespace {
 constexpr const char* kQueries = R"(
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };
-struct Answers { ivec4 counts; uvec4 bits; vec4 grid; };
+struct Answers { ivec4 counts; uvec4 bits; vec4 grid; vec2 range; };
 layout(std430, binding = 1) buffer Results { Answers results[]; };
 uniform int grid;
 void main() {
@@ -33,6 +34,7 @@ void main() {
                               laminaCountNearer(grid, voxel.xy, voxel.z), inside);
     results[i].bits = laminaColumnBits(grid, voxel.xy, voxel.z >> 7);
     results[i].grid = vec4(place, float(laminaGridSize(grid).z));
+    results[i].range = laminaColumnRange(grid, ivec2(floor(place.xy)));
 }
 )";
 
@@ -40,6 +42,8 @@ struct Answers {
     glm::ivec4 counts;
     glm::uvec4 bits;
     glm::vec4 grid;
+    glm::vec2 range;
+    glm::vec2 padding;
 };
 
 class GridQueryGlTest : public test::GlTest {
@@ -53,6 +57,31 @@ protected:
                 for (std::uint32_t x = 0; x < size.x; ++x)
                     if (set(mRandom))
                         bits.set({x, y, z});
+        return bits;
+    }
+
+    /// Random bits in random ranges of at least a fifth of the depths; some columns are empty, some
+    /// ranges have no extent.
+    BitGrid randomLocalBits(const GridTransform& transform, double density) {
+        const BitGrid uniform = randomBits(transform, density);
+        const auto near = static_cast<float>(transform.nearDepth());
+        const float extent = static_cast<float>(transform.farDepth()) - near;
+        std::uniform_real_distribution<float> share(0.0f, 1.0f);
+        std::vector<ColumnRange> ranges(std::size_t{transform.size().x} * transform.size().y);
+        for (ColumnRange& range : ranges) {
+            range.near = near + 0.4f * share(mRandom) * extent;
+            range.far = range.near + (0.2f + 0.4f * share(mRandom)) * extent;
+            const float kind = share(mRandom);
+            if (kind < 0.2f)
+                range = {};
+            else if (kind < 0.3f)
+                range.far = range.near;
+        }
+        BitGrid bits = BitGrid::create(transform, std::move(ranges)).value();
+        uniform.forEachSet([&](const glm::uvec3& voxel) {
+            if (!bits.columnRange(glm::uvec2(voxel)).isEmpty())
+                bits.set(voxel);
+        });
         return bits;
     }
 
@@ -164,6 +193,92 @@ TEST_P(GridStoreGlTest, AnswersEqualTheHosts) {
             EXPECT_GT(inside, 500u);
             EXPECT_GT(set, 100u);
         }
+    }
+    gl().DeleteProgram(program);
+}
+
+TEST_P(GridStoreGlTest, AnswersWithLocalRangesEqualTheHosts) {
+    const std::string source =
+        "#version 450 core\n#define LAMINA_GRID_COUNT 3\n"
+        "#define LAMINA_GRID_BUFFER_STORE " +
+        std::to_string(GetParam() == VoxelStore::Buffer) +
+        "\n"
+        "#define LAMINA_GRID_LOCAL_RANGES 1\n#define LAMINA_GRID_RANGE_UNIT 4\n" +
+        shaderSource("lamina/grid.glsl").value() + kQueries;
+    const GLuint program = buildProgram({{GL_COMPUTE_SHADER, source}});
+    const BitGrid bits[] = {
+        randomLocalBits(GridTransform::box({{-2, -1, 0}, {2, 1, 3}}, {9, 7, 200}, Axis::X).value(),
+                        0.3),
+        // A grid without, between two with local ranges.
+        randomBits(perspectiveGrid(128, SliceDistribution::logarithmic()), 0.6),
+        randomLocalBits(perspectiveGrid(300, SliceDistribution::logarithmic()), 0.5),
+    };
+    std::vector<VoxelGrid> grids;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        grids.push_back(VoxelGrid::create(device(), GetParam()).value());
+        ASSERT_TRUE(grids[i].upload(bits[i]));
+        EXPECT_EQ(grids[i].hasLocalRanges(), i != 1);
+        EXPECT_EQ(grids[i].rangeTexture() != 0, i != 1);
+        const BitGrid back = grids[i].download().value();
+        EXPECT_TRUE(compare(back, bits[i])->equal());
+        EXPECT_TRUE(std::ranges::equal(back.ranges(), bits[i].ranges()));
+        grids[i].bind(0, 0, i, 4);
+    }
+    constexpr std::size_t kPoints = 20000;
+    std::vector<glm::vec4> points(kPoints);
+    std::uniform_real_distribution<float> place(-3.5f, 4.0f);
+    for (glm::vec4& point : points)
+        point = {place(mRandom), place(mRandom), place(mRandom), 1.0f};
+    std::vector<Answers> answers(kPoints);
+    for (int index = 0; index < 3; ++index) {
+        const BitGrid& host = bits[index];
+        const GridTransform& transform = host.transform();
+        const double extent = transform.farDepth() - transform.nearDepth();
+        gl().ProgramUniform1i(program, gl().GetUniformLocation(program, "grid"), index);
+        runCompute(program, std::as_bytes(std::span(points)),
+                   std::as_writable_bytes(std::span(answers)), kPoints);
+        std::size_t inside = 0;
+        std::size_t empty = 0;
+        std::size_t beyond = 0;
+        for (std::size_t i = 0; i < kPoints; ++i) {
+            const glm::dvec3 world(points[i]);
+            const glm::dvec3 grid = transform.worldToGrid(world);
+            const auto column = transform.columnAt(world);
+            // Single precision may choose another voxel within this distance of a face.
+            constexpr double kTolerance = 5e-3;
+            const auto isNearFace = [&](double value) {
+                return std::isnan(value) || std::abs(value - std::round(value)) < kTolerance;
+            };
+            if (isNearFace(grid.x) || isNearFace(grid.y))
+                continue;
+            if (!column) {
+                EXPECT_EQ(answers[i].counts.x + answers[i].counts.y + answers[i].counts.w, 0) << i;
+                continue;
+            }
+            const ColumnRange range = host.columnRange(column->column);
+            ASSERT_EQ(answers[i].range, glm::vec2(range.near, range.far)) << i;
+            if (std::min(std::abs(column->depth - range.near),
+                         std::abs(column->depth - range.far)) < 1e-5 * extent)
+                continue;
+            const auto voxel = host.voxelAt(world);
+            double slice = 0.0;
+            if (voxel) {
+                slice = host.hasLocalRanges() ? transform.sliceCoordinate(column->depth, range)
+                                              : transform.sliceCoordinate(column->depth);
+                if (isNearFace(slice))
+                    continue;
+                EXPECT_NEAR(answers[i].grid.z, slice, kTolerance) << i;
+            }
+            ASSERT_EQ(answers[i].counts.w != 0, voxel.has_value()) << i;
+            ASSERT_EQ(answers[i].counts.x != 0, host.at(world)) << i;
+            ASSERT_EQ(answers[i].counts.y, static_cast<int>(host.countNearer(world))) << i;
+            inside += voxel ? 1 : 0;
+            empty += range.isEmpty() ? 1 : 0;
+            beyond += !range.isEmpty() && column->depth > range.far ? 1 : 0;
+        }
+        EXPECT_GT(inside, 300u);
+        EXPECT_GT(beyond, 100u);
+        EXPECT_EQ(empty > 100u, index != 1);
     }
     gl().DeleteProgram(program);
 }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
 #include <tuple>
@@ -118,6 +119,111 @@ TEST(BitGrid, ReorientedGridsHoldTheSameWorldVoxels) {
     const GridTransform camera =
         GridTransform::camera(GridCamera{.near = 1, .far = 2}, {2, 2, 2}).value();
     EXPECT_THAT(BitGrid::create(camera)->reoriented(Axis::X).error().text, HasSubstr("box grid"));
+}
+
+/// Columns 0 to 3 of a row: a range, all depths, no extent, empty.
+BitGrid localGrid(std::uint32_t slices) {
+    return BitGrid::create(boxGrid({4, 1, slices}), {{1.0f, 2.0f}, {0.0f, 3.0f}, {1.5f, 1.5f}, {}})
+        .value();
+}
+
+TEST(BitGrid, LocalRangesDivideEachColumnsOwnDepths) {
+    BitGrid grid = localGrid(10);
+    ASSERT_TRUE(grid.hasLocalRanges());
+    EXPECT_EQ(grid.columnRange({0, 0}), (ColumnRange{1.0f, 2.0f}));
+    EXPECT_TRUE(grid.columnRange({3, 0}).isEmpty());
+    const auto at = [&](double x, double z) { return grid.voxelAt({(x + 0.5) / 4, 1.0, z}); };
+    EXPECT_EQ(at(0, 0.99), std::nullopt);
+    EXPECT_EQ(at(0, 1.0), glm::uvec3(0, 0, 0));
+    EXPECT_EQ(at(0, 1.55), glm::uvec3(0, 0, 5));
+    EXPECT_EQ(at(0, 2.0), glm::uvec3(0, 0, 9));
+    EXPECT_EQ(at(0, 2.01), std::nullopt);
+    EXPECT_EQ(at(1, 1.55), glm::uvec3(1, 0, 5));
+    EXPECT_EQ(at(2, 1.5), glm::uvec3(2, 0, 0));
+    EXPECT_EQ(at(2, 1.51), std::nullopt);
+    EXPECT_EQ(at(3, 1.5), std::nullopt);
+    EXPECT_DOUBLE_EQ(grid.depthAt({0, 0}, 5.0), 1.5);
+    EXPECT_DOUBLE_EQ(grid.depthAt({1, 0}, 5.0), 1.5);
+    EXPECT_DOUBLE_EQ(grid.depthAt({0, 0}, 1.0), 1.0 + (double(2.0f) - 1.0) / 10);
+    EXPECT_DOUBLE_EQ(grid.depthAt({2, 0}, 7.0), 1.5);
+}
+
+TEST(BitGrid, CountsNearerPointsInLocalRanges) {
+    BitGrid grid = localGrid(10);
+    for (const std::uint32_t slice : {0u, 4u, 9u})
+        for (const std::uint32_t x : {0u, 1u})
+            grid.set({x, 0, slice});
+    grid.set({2, 0, 0});
+    const auto nearer = [&](double x, double z) {
+        return grid.countNearer(glm::dvec3((x + 0.5) / 4, 1.0, z));
+    };
+    EXPECT_EQ(nearer(0, 0.5), 0u);
+    EXPECT_EQ(nearer(0, 1.05), 0u);
+    EXPECT_EQ(nearer(0, 1.45), 1u);
+    EXPECT_EQ(nearer(0, 1.55), 2u);
+    EXPECT_EQ(nearer(0, 1.95), 2u);
+    EXPECT_EQ(nearer(0, 2.5), 3u);
+    EXPECT_EQ(nearer(0, 100.0), 3u);
+    EXPECT_EQ(nearer(1, 2.5), 2u);
+    EXPECT_EQ(nearer(2, 1.4), 0u);
+    EXPECT_EQ(nearer(2, 1.6), 1u);
+    EXPECT_EQ(nearer(3, 2.5), 0u);
+    EXPECT_EQ(nearer(4, 2.5), 0u);
+    EXPECT_TRUE(grid.at({0.125, 1.0, 1.05}));
+    EXPECT_FALSE(grid.at({0.125, 1.0, 0.05}));
+}
+
+TEST(BitGrid, CountsNearerPointsInUniformGrids) {
+    BitGrid grid = BitGrid::create(boxGrid({4, 1, 3})).value();
+    grid.set({1, 0, 0});
+    grid.set({1, 0, 2});
+    EXPECT_EQ(grid.countNearer(glm::dvec3(0.3, 1, -1)), 0u);
+    EXPECT_EQ(grid.countNearer(glm::dvec3(0.3, 1, 2.5)), 1u);
+    EXPECT_EQ(grid.countNearer(glm::dvec3(0.3, 1, 3.5)), 2u);
+    EXPECT_EQ(grid.countNearer(glm::dvec3(1.3, 1, 3.5)), 0u);
+}
+
+TEST(BitGrid, UniformGridsHoldAllThatLocalOnesDo) {
+    BitGrid grid = localGrid(10);
+    grid.set({0, 0, 3});
+    grid.set({1, 0, 9});
+    grid.set({2, 0, 0});
+    // Depths 1.3 to 1.4, 2.7 to 3 and 1.5 in slices of a quarter.
+    const BitGrid uniform = grid.toUniform(12).value();
+    EXPECT_FALSE(uniform.hasLocalRanges());
+    EXPECT_EQ(uniform.size(), glm::uvec3(4, 1, 12));
+    EXPECT_EQ(uniform.transform().boxAxis(), Axis::Z);
+    std::vector<glm::uvec3> voxels;
+    uniform.forEachSet([&](const glm::uvec3& voxel) { voxels.push_back(voxel); });
+    EXPECT_THAT(voxels, testing::ElementsAre(glm::uvec3(0, 0, 5), glm::uvec3(1, 0, 10),
+                                             glm::uvec3(1, 0, 11), glm::uvec3(2, 0, 6)));
+    // A hundred random grids: every set voxel's middle is in a set voxel.
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> depth(0.0f, 3.0f);
+    for (int round = 0; round < 100; ++round) {
+        std::vector<ColumnRange> ranges(4);
+        for (ColumnRange& range : ranges) {
+            const auto [near, far] = std::minmax({depth(random), depth(random)});
+            range = {near, far};
+        }
+        BitGrid local = BitGrid::create(boxGrid({4, 1, 40}), ranges).value();
+        for (int i = 0; i < 20; ++i)
+            local.set({random() % 4, 0, random() % 40});
+        const BitGrid resampled = local.toUniform(1 + random() % 200).value();
+        local.forEachSet([&](const glm::uvec3& voxel) {
+            const double middle = local.depthAt(glm::uvec2(voxel), voxel.z + 0.5);
+            EXPECT_TRUE(resampled.at({(voxel.x + 0.5) / 4, 1.0, middle}));
+        });
+    }
+    EXPECT_THAT(grid.toUniform(0).error().text, HasSubstr("at least one voxel"));
+}
+
+TEST(BitGrid, LocalRangesThatDoNotFitAreNamed) {
+    const auto wrong = BitGrid::create(boxGrid({4, 2, 8}), std::vector<ColumnRange>(7));
+    ASSERT_FALSE(wrong);
+    EXPECT_THAT(wrong.error().text, HasSubstr("each of 8 columns, found 7"));
+    EXPECT_THAT(localGrid(4).reoriented(Axis::X).error().text,
+                HasSubstr("with local ranges; use toUniform() first"));
 }
 
 TEST(BitGrid, TooLargeForTheHostIsAnError) {

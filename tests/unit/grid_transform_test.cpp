@@ -129,6 +129,31 @@ TEST(GridTransform, SliceDistributions) {
     EXPECT_DOUBLE_EQ(linear.sliceCoordinate(2.5), 0.5);
 }
 
+TEST(GridTransform, SlicesOfAColumnsOwnRange) {
+    const auto custom = SliceDistribution::custom({0.0f, 0.25f, 0.75f, 1.0f});
+    const GridTransform transform =
+        GridTransform::box({{0, 0, 0}, {1, 1, 8}}, {2, 2, 3}, Axis::Z, custom).value();
+    const ColumnRange range{2.0f, 6.0f};
+    EXPECT_EQ(transform.sliceAt(1.999, range), std::nullopt);
+    EXPECT_EQ(transform.sliceAt(2.0, range), 0u);
+    EXPECT_EQ(transform.sliceAt(2.999, range), 0u);
+    EXPECT_EQ(transform.sliceAt(3.0, range), 1u);
+    EXPECT_EQ(transform.sliceAt(6.0, range), 2u);
+    EXPECT_EQ(transform.sliceAt(6.001, range), std::nullopt);
+    EXPECT_DOUBLE_EQ(transform.sliceCoordinate(4.0, range), 1.5);
+    EXPECT_DOUBLE_EQ(transform.sliceCoordinate(7.0, range), 3.0);
+    EXPECT_DOUBLE_EQ(transform.depthAtSlice(1.5, range), 4.0);
+    EXPECT_EQ(transform.sliceAt(3.0, ColumnRange{}), std::nullopt);
+    EXPECT_EQ(transform.sliceAt(3.0, ColumnRange{3.0f, 3.0f}), 0u);
+    EXPECT_DOUBLE_EQ(transform.sliceCoordinate(3.0, ColumnRange{3.0f, 3.0f}), 0.0);
+
+    const GridTransform finer = transform.withSlices(16).value();
+    EXPECT_EQ(finer.size(), glm::uvec3(2, 2, 16));
+    EXPECT_EQ(finer, GridTransform::box({{0, 0, 0}, {1, 1, 8}}, {2, 2, 16}).value());
+    EXPECT_EQ(finer.boxAxis(), Axis::Z);
+    EXPECT_FALSE(transform.withSlices(0));
+}
+
 TEST(GridTransform, UpperBoundsBelongToTheLastVoxel) {
     const GridTransform transform = GridTransform::box(kBox, {8, 4, 6}).value();
     EXPECT_EQ(transform.voxelAt({3, 4, 13}), glm::uvec3(7, 3, 5));

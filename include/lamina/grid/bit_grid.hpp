@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct BitGridComparison {
 /// Words stand as in VoxelGrid's texture: groups of 128 slices, in each the columns row by row, in
 /// each column four 32-bit words; bit (k & 31) of word (k >> 5) & 3 of group k >> 7 is slice k.
 /// Bits past the last slice are zero. Movable and copyable.
+///
+/// A grid has one range of depths, that of its transform, or local ranges: each column's slices
+/// then divide a range of its own ([ED06] 2.3), and an empty column holds nothing.
 class LAMINA_API BitGrid {
 public:
     static constexpr std::uint32_t kSlicesPerGroup = 128;
@@ -38,6 +42,11 @@ public:
     /// All voxels clear. Memory: wordCount() * 4 bytes.
     /// Errors: OutOfMemory.
     [[nodiscard]] static Result<BitGrid> create(const GridTransform& transform);
+
+    /// The same with local ranges. ranges: one a column, row by row.
+    /// Errors: InvalidArgument (another number of ranges), OutOfMemory.
+    [[nodiscard]] static Result<BitGrid> create(const GridTransform& transform,
+                                                std::vector<ColumnRange> ranges);
 
     [[nodiscard]] const GridTransform& transform() const { return mTransform; }
     /// Columns in x, columns in y, slices.
@@ -53,6 +62,18 @@ public:
         std::uint32_t& word = mWords[wordIndex(voxel)];
         word = value ? word | bit : word & ~bit;
     }
+    [[nodiscard]] bool hasLocalRanges() const { return !mRanges.empty(); }
+    /// One range a column, row by row; empty for a grid without local ranges.
+    [[nodiscard]] std::span<const ColumnRange> ranges() const { return mRanges; }
+    /// The depths that the slices of a column inside the grid (asserted) divide; in a grid without
+    /// local ranges, those of the transform.
+    [[nodiscard]] ColumnRange columnRange(const glm::uvec2& column) const;
+    /// Eye depth at a slice coordinate in [0, slices] (clamped) of a column that is not empty
+    /// (asserted), world units.
+    [[nodiscard]] double depthAt(const glm::uvec2& column, double sliceCoordinate) const;
+
+    /// The voxel that holds a world point, or nothing outside the grid or the column's range.
+    [[nodiscard]] std::optional<glm::uvec3> voxelAt(const glm::dvec3& world) const;
     /// Is the world point in a set voxel? False outside the grid.
     [[nodiscard]] bool at(const glm::dvec3& world) const;
 
@@ -60,6 +81,11 @@ public:
     [[nodiscard]] std::uint64_t count() const;
     /// Set voxels of column (x,y) in slices nearer than `slice` (any value; clamped to the slices).
     [[nodiscard]] std::uint32_t countNearer(const glm::uvec2& column, std::uint32_t slice) const;
+
+    /// Set voxels nearer to the grid's camera than the slice that holds a world point, in the
+    /// point's column ([ED06] 3.1). 0 for points before the column's range or outside the columns;
+    /// all of the column's voxels for points beyond its range.
+    [[nodiscard]] std::uint32_t countNearer(const glm::dvec3& world) const;
 
     /// Calls visit(glm::uvec3 voxel) for each set voxel, by group, row, column, slice.
     template<class Visitor>
@@ -92,9 +118,15 @@ public:
     [[nodiscard]] std::span<std::uint32_t> words() { return mWords; }
 
     /// The same voxels with columns along `axis`. This grid must come from GridTransform::box()
-    /// with a linear distribution.
+    /// with a linear distribution, without local ranges.
     /// Errors: InvalidArgument for other grids, OutOfMemory.
     [[nodiscard]] Result<BitGrid> reoriented(Axis axis) const;
+
+    /// The grid cut into `slices` slices of equal depth over the transform's whole range: every
+    /// voxel that overlaps a set voxel of this one, beyond rounding, is set. For uses that know one
+    /// range only, voxel files above all.
+    /// Errors: InvalidArgument (no slices), OutOfMemory.
+    [[nodiscard]] Result<BitGrid> toUniform(std::uint32_t slices) const;
 
 private:
     explicit BitGrid(const GridTransform& transform)
@@ -102,10 +134,11 @@ private:
 
     GridTransform mTransform;
     std::vector<std::uint32_t> mWords;
+    std::vector<ColumnRange> mRanges;
 };
 
 /// Compares voxel by voxel.
-/// Errors: InvalidArgument if the sizes differ (the transforms may).
+/// Errors: InvalidArgument if the sizes differ (the transforms and local ranges may).
 [[nodiscard]] LAMINA_API Result<BitGridComparison> compare(const BitGrid& first,
                                                            const BitGrid& second);
 

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -46,6 +47,22 @@ private:
 
     Kind mKind;
     std::vector<float> mBoundaries;
+};
+
+/// The depths that the slices of one column divide, in a grid with local ranges ([ED06] 2.3).
+struct ColumnRange {
+    float near = std::numeric_limits<float>::max(); ///< Eye depth, world units.
+    float far = -std::numeric_limits<float>::max(); ///< Eye depth, world units.
+
+    /// No geometry in the column; what a default-constructed range says.
+    [[nodiscard]] bool isEmpty() const { return !(near <= far); }
+    bool operator==(const ColumnRange&) const = default;
+};
+
+/// Where a world point stands in a grid.
+struct ColumnPlace {
+    glm::uvec2 column{0};
+    double depth = 0.0; ///< World units; any.
 };
 
 /// A camera whose pixels are the columns of a grid.
@@ -111,6 +128,8 @@ public:
     [[nodiscard]] glm::dvec3 worldToGrid(const glm::dvec3& world) const;
     /// The inverse of worldToGrid(); z is clamped to [0, slices].
     [[nodiscard]] glm::dvec3 gridToWorld(const glm::dvec3& grid) const;
+    /// The column that holds a world point, or nothing outside the columns or behind the eye.
+    [[nodiscard]] std::optional<ColumnPlace> columnAt(const glm::dvec3& world) const;
     /// The voxel that holds a world point, or nothing outside the grid.
     [[nodiscard]] std::optional<glm::uvec3> voxelAt(const glm::dvec3& world) const;
     /// World position of a voxel's centre (grid coordinates voxel + 0.5).
@@ -126,6 +145,13 @@ public:
     /// The slice that holds `depth`, or nothing outside [near, far]; far belongs to the last slice.
     /// A depth within 2^-40 of the depth range before a boundary counts as on it.
     [[nodiscard]] std::optional<std::uint32_t> sliceAt(double depth) const;
+    /// The same three where the slices divide `range` instead of [near, far]: at the same fractions
+    /// of it, whatever the distribution. A range of no extent has all its depths in slice 0.
+    /// sliceAt(): nothing for an empty range; the other two need one that is not empty (asserted).
+    [[nodiscard]] double sliceCoordinate(double depth, const ColumnRange& range) const;
+    [[nodiscard]] double depthAtSlice(double sliceCoordinate, const ColumnRange& range) const;
+    [[nodiscard]] std::optional<std::uint32_t> sliceAt(double depth,
+                                                       const ColumnRange& range) const;
     /// slices + 1 increasing fractions of the depth range; empty for a linear distribution.
     [[nodiscard]] std::span<const float> sliceBoundaries() const { return mBoundaries; }
 
@@ -138,6 +164,12 @@ public:
     /// For grids made by box(): the box.
     [[nodiscard]] const Box3& boxBounds() const { return mBox; }
 
+    /// The same grid cut into another number of slices.
+    /// Errors: InvalidArgument, as camera().
+    [[nodiscard]] Result<GridTransform>
+    withSlices(std::uint32_t slices,
+               const SliceDistribution& distribution = SliceDistribution::linear()) const;
+
     /// "1024 x 1024 x 128 orthographic", for messages.
     [[nodiscard]] std::string describe() const;
 
@@ -146,6 +178,9 @@ public:
 private:
     GridTransform() = default;
     Result<void> setDistribution(const SliceDistribution& distribution);
+    [[nodiscard]] double sliceCoordinateOf(double fraction) const;
+    [[nodiscard]] double fractionAtSlice(double sliceCoordinate) const;
+    [[nodiscard]] std::optional<std::uint32_t> sliceOf(double fraction) const;
 
     glm::uvec3 mSize{1};
     Projection mProjection = Projection::Orthographic;

@@ -8,6 +8,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string_view>
 
 namespace lamina {
@@ -20,6 +22,12 @@ enum class VoxelStore : std::uint8_t {
 };
 
 [[nodiscard]] LAMINA_API std::string_view name(VoxelStore store); ///< "texture"
+
+/// What the slices of a VoxelGrid divide.
+enum class SliceRanges : std::uint8_t {
+    Uniform, ///< [near, far] of the transform, in every column.
+    Local,   ///< A range of each column's own, kept in a near/far map.
+};
 
 /// Voxels in GL memory, one bit each: the result of a Voxelizer, and what shaders query.
 ///
@@ -47,13 +55,19 @@ public:
     /// Errors: DeviceLimit, OutOfMemory; the grid is then unchanged.
     [[nodiscard]] Result<void> resize(const GridTransform& transform);
     /// The same, and keeps the voxels in `store` from now on.
-    [[nodiscard]] Result<void> resize(const GridTransform& transform, VoxelStore store);
+    [[nodiscard]] Result<void> resize(const GridTransform& transform, VoxelStore store,
+                                      SliceRanges ranges = SliceRanges::Uniform);
+    /// The same for several grids at once; with local ranges they share one near/far map.
+    /// Errors: as resize(); all grids are then unchanged.
+    [[nodiscard]] static Result<void> resizeAll(std::span<VoxelGrid> grids,
+                                                const GridTransform& transform, VoxelStore store,
+                                                SliceRanges ranges = SliceRanges::Uniform);
 
-    /// Takes shape, place and voxels of `bits`. GL: no barrier needed before queries.
+    /// Takes shape, place, voxels and local ranges of `bits`. GL: no barrier needed before queries.
     /// Errors: as resize(); the grid is then unchanged.
     [[nodiscard]] Result<void> upload(const BitGrid& bits);
 
-    /// The voxels, copied to host memory. Waits for the GPU.
+    /// The voxels, and the near/far map if there is one, copied to host memory. Waits for the GPU.
     /// Errors: InvalidArgument on a grid of no size, OutOfMemory.
     [[nodiscard]] Result<BitGrid> download() const;
 
@@ -61,10 +75,12 @@ public:
     /// uniformBufferBinding + grid, the texture (and no sampler object) to unit textureUnit + grid,
     /// where the bases are LAMINA_GRID_BLOCK_BINDING and LAMINA_GRID_TEXTURE_UNIT of the shader,
     /// which must be compiled with LAMINA_GRID_BUFFER_STORE 1 for the buffer store, 0 for the
-    /// other. Does nothing on a grid of no size. GL: these two bindings (and the sampler binding of
-    /// the unit) are what it changes; the caller restores them if need be.
+    /// other. With local ranges, also the near/far map to unit rangeTextureUnit + grid
+    /// (LAMINA_GRID_RANGE_UNIT; by default 8 after textureUnit) of a shader compiled with
+    /// LAMINA_GRID_LOCAL_RANGES 1. Does nothing on a grid of no size. GL: these bindings (and the
+    /// sampler bindings of the units) are what it changes; the caller restores them if need be.
     void bind(std::uint32_t uniformBufferBinding = 0, std::uint32_t textureUnit = 0,
-              std::uint32_t grid = 0) const;
+              std::uint32_t grid = 0, std::optional<std::uint32_t> rangeTextureUnit = {}) const;
 
     /// Where the voxels are; nothing for a grid of no size.
     [[nodiscard]] const GridTransform* transform() const;
@@ -74,9 +90,14 @@ public:
     [[nodiscard]] std::uint32_t texture() const;
     /// GL name of the buffer; 0 in the texture store and for a grid of no size.
     [[nodiscard]] std::uint32_t buffer() const;
+    [[nodiscard]] bool hasLocalRanges() const;
+    /// GL name of the near/far map, 0 without local ranges: a GL_RG32F 2D texture, a texel a
+    /// column, that holds the nearest depth of the column and the negated farthest, eye depths in
+    /// world units; in an empty column, the largest float twice. A Voxelizer rounds them outwards.
+    [[nodiscard]] std::uint32_t rangeTexture() const;
     /// GL name of the uniform buffer.
     [[nodiscard]] std::uint32_t uniformBuffer() const;
-    /// Bytes of GL memory held.
+    /// Bytes of GL memory held, a shared near/far map counted in full.
     [[nodiscard]] std::uint64_t gpuBytes() const;
 
 private:

@@ -77,9 +77,10 @@ gridFiles(const std::filesystem::path& path, const GridWriteOptions& options = {
 /// appears whole or not at all.
 /// Cost: one pass over the grid; memory beyond it is a few slices, for Vdb also OpenVDB's tree,
 /// with attributes 8 bytes for each 128 slices of each column. Errors: InvalidArgument (attributes
-/// of another number of voxels); UnknownFormat; Unsupported (a camera grid, non-linear slices, what
-/// the format cannot store, Vdb in a build without OpenVDB); NotFound, InputOutput (see
-/// AtomicFile); OutOfMemory. Threads: different files may be written at the same time.
+/// of another number of voxels); UnknownFormat; Unsupported (a camera grid, non-linear slices,
+/// local ranges: see BitGrid::toUniform(), what the format cannot store, Vdb in a build without
+/// OpenVDB); NotFound, InputOutput (see AtomicFile); OutOfMemory. Threads: different files may be
+/// written at the same time.
 [[nodiscard]] LAMINA_API Result<void> writeGrid(const std::filesystem::path& path,
                                                 const BitGrid& grid,
                                                 const GridWriteOptions& options = {});

@@ -2,6 +2,8 @@
 
 #include "grid_io/box_voxels.hpp"
 
+#include <gmock/gmock.h>
+
 namespace lamina::detail {
 namespace {
 
@@ -69,6 +71,16 @@ TEST(BoxVoxels, RefusesCameraGrids) {
     const auto voxels = BoxVoxels::create(grid);
     ASSERT_FALSE(voxels);
     EXPECT_EQ(voxels.error().code, ErrorCode::Unsupported);
+}
+
+TEST(BoxVoxels, RefusesLocalRangesAndSaysWhatToDo) {
+    const auto transform = GridTransform::box({{0, 0, 0}, {1, 1, 1}}, {2, 2, 4}).value();
+    const BitGrid grid = *BitGrid::create(transform, std::vector<ColumnRange>(4));
+    const auto voxels = BoxVoxels::create(grid);
+    ASSERT_FALSE(voxels);
+    EXPECT_EQ(voxels.error().code, ErrorCode::Unsupported);
+    EXPECT_THAT(voxels.error().text, testing::HasSubstr("BitGrid::toUniform()"));
+    EXPECT_TRUE(BoxVoxels::create(*grid.toUniform(4)));
 }
 
 TEST(Transpose32, SwapsRowsAndColumns) {
