@@ -15,15 +15,21 @@ int laminaCustomSliceAt(double fraction, LaminaDrawConstants grid) {
     return low;
 }
 
-// Slice of a depth, or -1 outside the grid. `grid`: see LaminaDrawConstants.
-int laminaSliceAt(double depth, LaminaDrawConstants grid) {
-    precise double fraction = (depth - grid.depthRange.x) * grid.depthRange.y;
+// Slice of a depth that stands at `fraction` of the range that the slices divide, or -1 outside the range.
+// `grid`: see LaminaDrawConstants.
+int laminaSliceOf(double fraction, LaminaDrawConstants grid) {
     if (!(fraction >= -LAMINA_DEPTH_SNAP && fraction <= 1.0lf + LAMINA_DEPTH_SNAP))
         return -1;
     fraction = max(fraction + LAMINA_DEPTH_SNAP, 0.0lf);
     if ((grid.size.w & LAMINA_GRID_CUSTOM_SLICES) == 0u)
         return min(int(floor(fraction * grid.depthRange.w)), int(grid.size.z) - 1);
     return laminaCustomSliceAt(fraction, grid);
+}
+
+// The same of a depth in the grid's own range.
+int laminaSliceAt(double depth, LaminaDrawConstants grid) {
+    precise double fraction = (depth - grid.depthRange.x) * grid.depthRange.y;
+    return laminaSliceOf(fraction, grid);
 }
 
 // The last slice whose centre (slice coordinate k + 0.5) lies before a depth, or -1 if none does.

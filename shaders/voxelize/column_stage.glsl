@@ -12,3 +12,6 @@ layout(location = 11) flat LAMINA_STAGE dvec2 laminaEdgeValues1;
 layout(location = 12) flat LAMINA_STAGE dvec2 laminaEdgeValues2;
 layout(location = 13) flat LAMINA_STAGE int laminaIsEdgeOn;
 #endif
+#if LAMINA_SPLIT
+layout(location = 9) flat LAMINA_STAGE uint laminaTriangleGrid;
+#endif

@@ -1,4 +1,5 @@
 // Vertex stage of a MeshView: positions from a vertex buffer.
+// permute LAMINA_SPLIT = 0 1
 #include <voxelize/vertex_main.glsl>
 
 layout(location = LAMINA_ATTRIBUTE_POSITION) in vec3 laminaPosition;

@@ -1,17 +1,20 @@
-// Sets the bits of one column for one triangle; logic op OR gathers them ([ED06] 2.2), or XOR where the
-// inside is wanted (Eisemann and Decoret 2008).
+// Sets the bits of one column for one triangle ([ED06] 2.2 to 2.4), or toggles them where the inside is
+// wanted (Eisemann and Decoret 2008).
 //
-// One invocation owns one (triangle, column) pair of one pass of 128 slices:
-//   1. reject columns that the triangle gives no depths (laminaDepthsInColumn);
-//   2. Sampled: the slice of the triangle's depth at the centre;
-//      Filled, Conservative: the slices between the least and the greatest depth of the part of the
-//      triangle in the column's square;
-//      Solid: all slices whose centre lies before the depth at the centre, to be toggled. What remains
-//      set has an odd number of crossings beyond it;
-//   3. write their bits of this pass.
+// One invocation owns one (triangle, column) pair of one pass:
+//   1. the depths that the triangle gives the column by its coverage, cut to the depths that the column's
+//      slices divide: the grid's, or with LAMINA_LOCAL 1 those of the near/far map;
+//   2. the slices from the first to the last of them. Solid: all slices whose centre lies before the depth
+//      at the column's centre, to be toggled; what remains set has an odd number of crossings beyond it;
+//   3. their bits: LAMINA_TARGETS render targets of 128 slices each, where logic op OR (Solid: XOR) gathers
+//      them; or with LAMINA_TARGETS 0 atomics on the words of a buffer, those that have a bit to set alone.
+//      Atomic: other triangles of the column run at the same time.
+// With LAMINA_SPLIT 1 target t belongs to grid t % grids, and only those of the triangle's grid get bits.
 // permute LAMINA_COVERAGE = LAMINA_COVERAGE_SAMPLED LAMINA_COVERAGE_FILLED LAMINA_COVERAGE_CONSERVATIVE LAMINA_COVERAGE_SOLID
-#include <voxelize/draw_block.glsl>
-#include <voxelize/column_depths.glsl>
+// permute LAMINA_LOCAL = 0 1
+// permute LAMINA_SPLIT = 0 1
+// permute LAMINA_TARGETS = 0 1 2 4 8
+#include <voxelize/slicemap_fragment.glsl>
 
 layout(std140, binding = LAMINA_PASS_GRID_BLOCK_BINDING) uniform LaminaPassGridBlock {
     LaminaGridConstants constants;
@@ -20,33 +23,20 @@ layout(std140, binding = LAMINA_PASS_GRID_BLOCK_BINDING) uniform LaminaPassGridB
 
 #include <lamina/slice_distribution.glsl>
 
-#define LAMINA_STAGE in
-#include <voxelize/column_stage.glsl>
-
-LaminaColumnTriangle receivedTriangle() {
-    LaminaColumnTriangle triangle = kLaminaNoTriangle;
-    triangle.edges = dvec4[3](laminaEdge0, laminaEdge1, laminaEdge2);
-    triangle.depthPlane = laminaDepthPlane;
-    triangle.depthRange = laminaDepthRange;
-#if LAMINA_COVERAGE == LAMINA_COVERAGE_FILLED || LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
-    triangle.edgeValues = dvec2[3](laminaEdgeValues0, laminaEdgeValues1, laminaEdgeValues2);
-    triangle.isEdgeOn = laminaIsEdgeOn != 0;
-#endif
-    return triangle;
-}
-
-layout(location = 0) out uvec4 laminaBits;
-
-#if LAMINA_COVERAGE == LAMINA_COVERAGE_SOLID
-// A bit for each column: odd number of crossings. Atomic: 32 columns share a word.
-layout(r32ui, binding = LAMINA_COLUMN_PARITY_IMAGE) uniform uimage2D laminaColumnParity;
-
-void laminaToggleColumn(ivec2 column) {
-    imageAtomicXor(laminaColumnParity, ivec2(column.x >> 5, column.y), 1u << uint(column.x & 31));
-}
+#if LAMINA_LOCAL
+layout(rg32f, binding = LAMINA_RANGE_IMAGE_UNIT) readonly uniform image2D laminaRanges;
 #endif
 
-// Bits [first, last] of the pass's 128; first and last may lie outside.
+#if LAMINA_TARGETS == 0
+// The pass's words, from its first group of 128 slices on.
+layout(std430, binding = LAMINA_WORDS_BINDING) buffer LaminaWords {
+    uint laminaWords[];
+};
+#else
+layout(location = 0) out uvec4 laminaBits[LAMINA_TARGETS];
+#endif
+
+// Bits [first, last] of 128; first and last may lie outside.
 uvec4 bitRange(int first, int last) {
     ivec4 low = clamp(ivec4(first) - ivec4(0, 32, 64, 96), ivec4(0), ivec4(32));
     ivec4 high = clamp(ivec4(last + 1) - ivec4(0, 32, 64, 96), ivec4(0), ivec4(32));
@@ -55,28 +45,89 @@ uvec4 bitRange(int first, int last) {
     return belowHigh & ~belowLow;
 }
 
-void main() {
-    dvec2 depths;
-    if (!laminaDepthsInColumn(receivedTriangle(), dvec2(gl_FragCoord.xy), depths))
-        discard;
+#if LAMINA_COVERAGE == LAMINA_COVERAGE_SOLID
+#define LAMINA_GATHER atomicXor
 
-    int firstSlice = int(laminaDraw.pass.x);
-    laminaBits = uvec4(0u);
-#if LAMINA_COVERAGE == LAMINA_COVERAGE_SAMPLED
-    int slice = laminaSliceAt(depths.x, laminaDraw);
-    if (slice >= 0)
-        laminaBits = bitRange(slice - firstSlice, slice - firstSlice);
-#elif LAMINA_COVERAGE == LAMINA_COVERAGE_SOLID
-    laminaBits = bitRange(-firstSlice, laminaLastCenterBefore(depths.x, laminaDraw) - firstSlice);
-    if (firstSlice == 0)
-        laminaToggleColumn(ivec2(gl_FragCoord.xy));
+// A bit for each column: odd number of crossings. Atomic: 32 columns share a word.
+layout(r32ui, binding = LAMINA_COLUMN_PARITY_IMAGE) uniform uimage2D laminaColumnParity;
+
+void toggleColumn(ivec2 column) {
+    imageAtomicXor(laminaColumnParity, ivec2(column.x >> 5, column.y), 1u << uint(column.x & 31));
+}
+
+bool slicesInColumn(out ivec2 slices) {
+    dvec2 depths;
+    if (!laminaDepthsInColumn(laminaReceivedTriangle(), dvec2(gl_FragCoord.xy), depths))
+        return false;
+    if (laminaDraw.pass.x == 0u)
+        toggleColumn(ivec2(gl_FragCoord.xy));
+    slices = ivec2(0, laminaLastCenterBefore(depths.x, laminaDraw));
+    return true;
+}
 #else
+#define LAMINA_GATHER atomicOr
+
+// The slices that the triangle sets in this column; false if none.
+bool slicesInColumn(out ivec2 slices) {
     double near = laminaDraw.depthRange.x;
     double far = near + 1.0lf / laminaDraw.depthRange.y;
-    double rounding = LAMINA_DEPTH_SNAP / laminaDraw.depthRange.y;
-    if (depths.y >= near - rounding && depths.x <= far + rounding) {
-        depths = clamp(depths, dvec2(near), dvec2(far));
-        laminaBits = bitRange(laminaSliceAt(depths.x, laminaDraw) - firstSlice, laminaSliceAt(depths.y, laminaDraw) - firstSlice);
-    }
+    dvec2 depths;
+#if LAMINA_LOCAL
+    dvec2 range = dvec2(imageLoad(laminaRanges, ivec2(gl_FragCoord.xy)).xy);
+    near = range.x;
+    far = -range.y;
+    if (near > far || !laminaDepthsBetween(near, far, depths))
+        return false;
+    double extent = far - near;
+    precise dvec2 fractions = extent > 0.0lf ? (depths - near) / extent : dvec2(0.0lf);
+    slices.x = laminaSliceOf(fractions.x, laminaDraw);
+    slices.y = depths.x == depths.y ? slices.x : laminaSliceOf(fractions.y, laminaDraw);
+#else
+    if (!laminaDepthsBetween(near, far, depths))
+        return false;
+    slices.x = laminaSliceAt(depths.x, laminaDraw);
+    slices.y = depths.x == depths.y ? slices.x : laminaSliceAt(depths.y, laminaDraw);
 #endif
+    return true;
+}
+#endif
+
+// Slices are counted from the pass's first on.
+#if LAMINA_TARGETS == 0
+void store(ivec2 slices) {
+    ivec2 columns = ivec2(laminaDraw.size.xy);
+    ivec2 column = ivec2(gl_FragCoord.xy);
+    int last = min(slices.y, int(laminaDraw.passDepths.z) - 1);
+    int skipped = int(laminaDraw.passDepths.w);
+    for (int word = max(slices.x, 0) >> 5; word <= last >> 5; ++word) {
+        int first = word << 5;
+        uint bits = (0xffffffffu << uint(clamp(slices.x - first, 0, 31))) & (0xffffffffu >> uint(clamp(first + 31 - last, 0, 31)));
+        int texel = ((word >> 2) * columns.y + column.y) * columns.x + column.x;
+        LAMINA_GATHER(laminaWords[skipped + texel * 4 + (word & 3)], bits);
+    }
+}
+#else
+void store(ivec2 slices) {
+#if LAMINA_SPLIT
+    uint grid = 0u;
+#endif
+    for (int target = 0; target < LAMINA_TARGETS; ++target) {
+        laminaBits[target] = bitRange(slices.x, slices.y);
+#if LAMINA_SPLIT
+        if (grid != laminaTriangleGrid)
+            laminaBits[target] = uvec4(0u);
+        if (++grid < laminaDraw.pass.z)
+            continue;
+        grid = 0u;
+#endif
+        slices -= LAMINA_SLICES_PER_GROUP;
+    }
+}
+#endif
+
+void main() {
+    ivec2 slices;
+    if (!slicesInColumn(slices))
+        discard;
+    store(slices - int(laminaDraw.pass.x));
 }

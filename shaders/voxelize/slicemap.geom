@@ -8,11 +8,14 @@
 //      Every column inside the polygon gets exactly one fragment: Solid counts them.
 // Conservative: the columns whose squares the triangle touches, degenerate projections (edge-on
 // triangles) included. Else the columns whose centres it owns; edge-on triangles own none and are dropped.
+// LAMINA_SPLIT 1: the grid that takes the triangle goes along.
+// permute LAMINA_SPLIT = 0 1
 // permute LAMINA_COVERAGE = LAMINA_COVERAGE_SAMPLED LAMINA_COVERAGE_FILLED LAMINA_COVERAGE_CONSERVATIVE LAMINA_COVERAGE_SOLID
 #include <voxelize/draw_block.glsl>
 
 #define LAMINA_STAGE out
 #include <voxelize/column_stage.glsl>
+#include <voxelize/slicemap_split.glsl>
 
 layout(triangles) in;
 #if LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
@@ -23,9 +26,15 @@ layout(triangle_strip, max_vertices = 4) out;
 
 in LaminaVertexStage {
     dvec3 column;
+#if LAMINA_SPLIT
+    uint material;
+#endif
 } laminaIn[];
 
 LaminaColumnTriangle triangle = kLaminaNoTriangle;
+#if LAMINA_SPLIT
+uint triangleGrid = 0u;
+#endif
 
 void emit(dvec2 column) {
     laminaEdge0 = triangle.edges[0];
@@ -38,6 +47,9 @@ void emit(dvec2 column) {
     laminaEdgeValues1 = triangle.edgeValues[1];
     laminaEdgeValues2 = triangle.edgeValues[2];
     laminaIsEdgeOn = triangle.isEdgeOn ? 1 : 0;
+#endif
+#if LAMINA_SPLIT
+    laminaTriangleGrid = triangleGrid;
 #endif
     gl_Position = vec4(vec2(column * (2.0lf / dvec2(laminaDraw.size.xy)) - 1.0lf), 0.0, 1.0);
     EmitVertex();
@@ -226,6 +238,11 @@ void main() {
     triangle.depthRange = dvec2(min(h[0].z, min(h[1].z, h[2].z)), max(h[0].z, max(h[1].z, h[2].z)));
     if (triangle.depthRange.x > laminaDraw.passDepths.y || triangle.depthRange.y < laminaDraw.passDepths.x)
         return;
+#if LAMINA_SPLIT
+    triangleGrid = laminaGridOf(h, laminaIn[2].material);
+    if (triangleGrid >= laminaDraw.pass.z)
+        return;
+#endif
 
     bool isPerspective = (laminaDraw.size.w & LAMINA_GRID_PERSPECTIVE) != 0u;
     double cutDepth = laminaDraw.depthRange.z;

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct DeviceState {
     /// Linked programs by everything that went into them (program_cache.hpp). Holds raw names,
     /// since owning handles would keep this state alive; ~Device deletes them.
     std::map<std::string, GLuint, std::less<>> programs;
+    /// Whether atomics of fragments gather slices faster than render targets, once measured
+    /// (voxelize/slicemap_calibration.hpp).
+    std::optional<bool> atomicsBeatTargets;
 
     void say(MessageSeverity severity, const std::string& text) const {
         if (desc.message)

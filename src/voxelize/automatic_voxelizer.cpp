@@ -22,6 +22,7 @@ public:
     [[nodiscard]] Backend backend() const override { return mUsed->backend(); }
     [[nodiscard]] VoxelizerCapabilities capabilities() const override {
         VoxelizerCapabilities capabilities = mUsed->capabilities();
+        capabilities.splits = mSlicemap->capabilities().splits;
         capabilities.perspective = true;
         capabilities.anyDistribution = true;
         return capabilities;
@@ -35,6 +36,15 @@ public:
             use(chosen);
         return stats;
     }
+    [[nodiscard]] Result<VoxelizeStats> voxelizeWith(std::span<const GeometrySource> sources,
+                                                     const GridTransform& transform,
+                                                     const VoxelizeOptions& options,
+                                                     std::span<VoxelGrid> grids) override {
+        auto stats = mSlicemap->voxelizeWith(sources, transform, options, grids);
+        if (stats && mUsed != mSlicemap.get())
+            use(*mSlicemap);
+        return stats;
+    }
     [[nodiscard]] Result<SolidReport> downloadSolidReport() const override {
         return mUsed->downloadSolidReport();
     }
@@ -46,7 +56,7 @@ private:
                                 std::string(name(mCoverage)) + " coverage: it " +
                                 (&chosen == mOverlap.get()
                                      ? "is exact and fast in orthographic grids with linear slices"
-                                     : "takes every projection and slice distribution"));
+                                     : "takes every projection, slice distribution and split"));
     }
 
     std::shared_ptr<gl::DeviceState> mDevice;
@@ -63,7 +73,9 @@ Result<std::unique_ptr<Voxelizer>> createAutomaticVoxelizer(const Device& device
     auto overlap = createOverlapVoxelizer(device, desc);
     if (!overlap)
         return overlap;
-    auto slicemap = createSlicemapVoxelizer(device, desc);
+    VoxelizerDesc mrt = desc;
+    mrt.backend = Backend::MrtSlicemap;
+    auto slicemap = createSlicemapVoxelizer(device, mrt);
     if (!slicemap)
         return slicemap;
     return std::unique_ptr<Voxelizer>(std::make_unique<AutomaticVoxelizer>(

@@ -277,7 +277,7 @@ TEST_P(GridStoreGlTest, AnswersWithLocalRangesEqualTheHosts) {
             beyond += !range.isEmpty() && column->depth > range.far ? 1 : 0;
         }
         EXPECT_GT(inside, 300u);
-        EXPECT_GT(beyond, 100u);
+        EXPECT_GT(beyond, index == 1 ? 0u : 100u);
         EXPECT_EQ(empty > 100u, index != 1);
     }
     gl().DeleteProgram(program);

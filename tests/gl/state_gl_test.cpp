@@ -9,6 +9,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 namespace lamina {
 namespace {
 
@@ -102,6 +104,65 @@ TEST_F(StateGlTest, EveryCallOfAVoxelizationRestoresTheState) {
             buffers.reset();
         });
     }
+}
+
+TEST_F(StateGlTest, EverySlicemapRestoresTheState) {
+    const VoxelizerDesc descs[] = {
+        {Backend::Slicemap, Coverage::Filled},
+        {Backend::LocalSlicemap, Coverage::Filled},
+        {Backend::MrtSlicemap, Coverage::Filled, false, VoxelStore::Texture},
+        {Backend::MrtSlicemap, Coverage::Filled, false, VoxelStore::Buffer},
+        {Backend::MrtSlicemap, Coverage::Solid, false, VoxelStore::Buffer},
+        {Backend::MrtSlicemap, Coverage::Conservative, true, VoxelStore::Texture},
+        {Backend::MrtSlicemap, Coverage::Filled, true, VoxelStore::Buffer},
+    };
+    for (const VoxelizerDesc& desc : descs) {
+        const std::string text = std::string(name(desc.backend)) + " " +
+                                 std::string(name(desc.store.value_or(VoxelStore::Texture)));
+        const BitGrid expected = test::voxelize(device(), desc, kBox, unitGrid(1200));
+        ASSERT_GT(expected.count(), 0u);
+        auto buffers = MeshBuffers::upload(device(), kBox).value();
+        const GeometrySource source = buffers.view();
+        const OddGlState odd(gl());
+        std::unique_ptr<Voxelizer> voxelizer;
+        expectUnchanged("Voxelizer::create",
+                        [&] { voxelizer = Voxelizer::create(device(), desc).value(); });
+        auto grid = VoxelGrid::create(device()).value();
+        expectUnchanged(text.c_str(), [&] {
+            ASSERT_TRUE(voxelizer->voxelize({&source, 1}, unitGrid(1200), grid));
+        });
+        std::optional<BitGrid> bits;
+        expectUnchanged("download", [&] { bits.emplace(grid.download().value()); });
+        EXPECT_TRUE(compare(*bits, expected)->equal()) << text;
+        EXPECT_TRUE(std::ranges::equal(bits->ranges(), expected.ranges())) << text;
+        expectUnchanged("upload", [&] { ASSERT_TRUE(grid.upload(*bits)); });
+        EXPECT_TRUE(std::ranges::equal(grid.download()->ranges(), expected.ranges())) << text;
+
+        std::vector<VoxelGrid> grids;
+        for (int i = 0; i < 2; ++i)
+            grids.push_back(VoxelGrid::create(device()).value());
+        const std::vector<Material> materials(1);
+        for (const Split split : {Split::Facing, Split::ColorClass})
+            if (voxelizer->capabilities().splits)
+                expectUnchanged("voxelizeWith", [&] {
+                    VoxelizeOptions options;
+                    options.split = split;
+                    options.materials = materials;
+                    if (voxelizer->capabilities().localRanges)
+                        options.bounds = {&source, 1};
+                    ASSERT_TRUE(
+                        voxelizer->voxelizeWith({&source, 1}, unitGrid(300), options, grids));
+                });
+        expectUnchanged("failed voxelizeWith", [&] {
+            EXPECT_FALSE(voxelizer->voxelizeWith({&source, 1}, unitGrid(300), {}, grids));
+        });
+    }
+}
+
+TEST_F(StateGlTest, MeasuringTheStoreRestoresTheState) {
+    const OddGlState odd(gl());
+    expectUnchanged("Voxelizer::create",
+                    [&] { EXPECT_TRUE(Voxelizer::create(device(), {Backend::MrtSlicemap})); });
 }
 
 class DrawSourceStateGlTest : public StateGlTest, public testing::WithParamInterface<Coverage> {};
@@ -203,6 +264,22 @@ TEST_P(DrawSourceStateGlTest, ActiveTransformFeedbackIsPausedAndResumed) {
     gl().DeleteProgram(program);
     gl().DeleteBuffers(1, &buffer);
     gl().DeleteVertexArrays(1, &vertexArray);
+}
+
+TEST_F(StateGlTest, BindingLocalRangesChangesOneMoreUnit) {
+    auto grid = VoxelGrid::create(device()).value();
+    ASSERT_TRUE(
+        grid.upload(BitGrid::create(unitGrid(64), std::vector<ColumnRange>(16 * 8)).value()));
+    const OddGlState odd(gl());
+    const auto before = readGlState(gl());
+    grid.bind(5, 2, 1, 3);
+    EXPECT_THAT(
+        differences(before, readGlState(gl())),
+        testing::UnorderedElementsAre(testing::StartsWith("GL_UNIFORM_BUFFER_BINDING[6]:"),
+                                      testing::StartsWith("GL_TEXTURE_BINDING_2D_ARRAY[3]:"),
+                                      testing::StartsWith("GL_SAMPLER_BINDING[3]:"),
+                                      testing::StartsWith("GL_TEXTURE_BINDING_2D[4]:"),
+                                      testing::StartsWith("GL_SAMPLER_BINDING[4]:")));
 }
 
 TEST_F(StateGlTest, AFullDebugGroupStackIsLeftAlone) {

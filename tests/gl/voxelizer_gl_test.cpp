@@ -144,7 +144,8 @@ TEST_F(VoxelizerGlTest, SeveralMeshesWithModelMatricesGatherInOneGrid) {
     }
     EXPECT_TRUE(compare(voxelize(sources, testGrid()), expected)->equal());
 
-    const auto stats = mVoxelizer->voxelize(sources, testGrid(300), *mGrid).value();
+    // 1024 slices a pass.
+    const auto stats = mVoxelizer->voxelize(sources, testGrid(2100), *mGrid).value();
     EXPECT_EQ(stats.sources, 3u);
     EXPECT_EQ(stats.passes, 3u);
     EXPECT_EQ(stats.meshTriangles, meshes[0].triangles.size() + meshes[1].triangles.size() + 12);
@@ -261,11 +262,11 @@ TEST_F(VoxelizerGlTest, ADrawSourceIsDrawnOncePerPassWithStripsAndRestart) {
         gl().DrawElements(GL_TRIANGLE_STRIP, 9, GL_UNSIGNED_SHORT, nullptr);
     };
     const GeometrySource sources[] = {source};
-    const BitGrid found = voxelize(sources, testGrid(256));
+    const BitGrid found = voxelize(sources, testGrid(2048));
     EXPECT_THAT(passes, testing::ElementsAre(0u, 1u));
     EXPECT_EQ(found.count(), 2u * 48u * 40u);
-    EXPECT_TRUE(found.test({7, 9, 64}));
-    EXPECT_TRUE(found.test({7, 9, 192}));
+    EXPECT_TRUE(found.test({7, 9, 512}));
+    EXPECT_TRUE(found.test({7, 9, 1536}));
     gl().Disable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
     gl().DeleteVertexArrays(1, &vertexArray);
 }
@@ -428,7 +429,7 @@ TEST_F(VoxelizerGlTest, TheStoreFollowsTheBackendAndMemoryIsGivenBack) {
 
 TEST_F(VoxelizerGlTest, AutomaticPicksByCoverageAndSaysWhy) {
     const std::pair<Coverage, Backend> expected[] = {
-        {Coverage::Sampled, Backend::Slicemap},     {Coverage::Filled, Backend::Slicemap},
+        {Coverage::Sampled, Backend::MrtSlicemap},  {Coverage::Filled, Backend::MrtSlicemap},
         {Coverage::Conservative, Backend::Overlap}, {Coverage::Separating6, Backend::Overlap},
         {Coverage::Solid, Backend::Overlap},
     };
@@ -448,7 +449,7 @@ TEST_F(VoxelizerGlTest, BackendsThatDoNotServeACoverageAreRefused) {
                                                      {Coverage::Filled, Backend::Overlap},
                                                      {Coverage::Separating6, Backend::Slicemap}};
     for (const auto& [coverage, backend] : refusals) {
-        const Backend able = backend == Backend::Slicemap ? Backend::Overlap : Backend::Slicemap;
+        const Backend able = backend == Backend::Slicemap ? Backend::Overlap : Backend::MrtSlicemap;
         const auto refused = Voxelizer::create(device(), {backend, coverage});
         ASSERT_FALSE(refused);
         EXPECT_EQ(refused.error().code, ErrorCode::Unsupported);
@@ -479,14 +480,17 @@ TEST_F(VoxelizerGlTest, AutomaticPicksByTheGridWhereTwoBackendsServe) {
         EXPECT_TRUE(voxelizer->capabilities().perspective);
         EXPECT_TRUE(voxelizer->capabilities().anyDistribution);
         for (const auto& [grid, backend] : {std::pair{&linear, Backend::Overlap},
-                                            {&custom, Backend::Slicemap},
+                                            {&custom, Backend::MrtSlicemap},
                                             {&linear, Backend::Overlap},
-                                            {&perspective, Backend::Slicemap}}) {
+                                            {&perspective, Backend::MrtSlicemap}}) {
             ASSERT_TRUE(voxelizer->voxelize({&source, 1}, *grid, *mGrid));
             EXPECT_EQ(voxelizer->backend(), backend);
             EXPECT_EQ(voxelizer->capabilities().store, mGrid->store());
             EXPECT_THAT(voxelizer->reason(), HasSubstr(std::string(name(backend)) + " serves"));
-            auto one = Voxelizer::create(device(), {backend, coverage}).value();
+            auto one = Voxelizer::create(device(), {.backend = backend,
+                                                    .coverage = coverage,
+                                                    .store = voxelizer->capabilities().store})
+                           .value();
             auto expected = VoxelGrid::create(device()).value();
             ASSERT_TRUE(one->voxelize({&source, 1}, *grid, expected));
             EXPECT_GT(mGrid->download()->count(), 0u);
@@ -498,16 +502,29 @@ TEST_F(VoxelizerGlTest, AutomaticPicksByTheGridWhereTwoBackendsServe) {
         // A call that fails leaves the choice as it is.
         const GeometrySource broken = MeshView{};
         EXPECT_FALSE(voxelizer->voxelize({&broken, 1}, linear, *mGrid));
-        EXPECT_EQ(voxelizer->backend(), Backend::Slicemap);
+        EXPECT_EQ(voxelizer->backend(), Backend::MrtSlicemap);
     }
 }
 
+TEST_F(VoxelizerGlTest, AutomaticSplitsBySlicemaps) {
+    auto buffers = MeshBuffers::upload(device(), kKnot).value();
+    const GeometrySource source = buffers.view();
+    auto voxelizer = Voxelizer::create(device(), {.coverage = Coverage::Conservative}).value();
+    std::vector<VoxelGrid> grids;
+    for (int i = 0; i < 2; ++i)
+        grids.push_back(VoxelGrid::create(device()).value());
+    ASSERT_TRUE(voxelizer->voxelizeWith({&source, 1}, testGrid(), {.split = Split::Facing}, grids));
+    EXPECT_EQ(voxelizer->backend(), Backend::MrtSlicemap);
+    EXPECT_GT(grids[1].download()->count(), 0u);
+}
+
 TEST_F(VoxelizerGlTest, SaysWhatItIs) {
-    EXPECT_EQ(mVoxelizer->backend(), Backend::Slicemap);
-    EXPECT_THAT(mVoxelizer->reason(), HasSubstr("slicemap"));
+    EXPECT_EQ(mVoxelizer->backend(), Backend::MrtSlicemap);
+    EXPECT_THAT(mVoxelizer->reason(), HasSubstr("mrt_slicemap"));
     const VoxelizerCapabilities able = mVoxelizer->capabilities();
     EXPECT_TRUE(able.perspective && able.drawSources);
-    EXPECT_EQ(able.slicesPerPass, 128u);
+    EXPECT_EQ(able.slicesPerPass, 1024u);
+    EXPECT_EQ(able.store, VoxelStore::Texture);
     EXPECT_GE(able.maxColumns, 16384u);
     EXPECT_GE(able.maxSlices, 2048u * 128u);
 }

@@ -6,9 +6,11 @@
 #include <lamina/grid/grid_transform.hpp>
 #include <lamina/grid/voxel_grid.hpp>
 #include <lamina/voxelize/geometry_source.hpp>
+#include <lamina/voxelize/material.hpp>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,8 +42,8 @@ enum class Coverage : std::uint8_t {
 
 /// How voxels are made.
 enum class Backend : std::uint8_t {
-    /// Sampled, Filled: Slicemap; Separating6: Overlap; Conservative, Solid: Overlap in the grids
-    /// that it takes, else Slicemap, call by call.
+    /// Sampled, Filled, and whatever asks for local ranges: MrtSlicemap; Separating6: Overlap;
+    /// Conservative, Solid: Overlap in the grids that it takes, else MrtSlicemap, call by call.
     Automatic,
     /// Bits by logic op, one pass of the geometry per 128 slices ([ED06] 2.1-2.3). Any grid; all
     /// coverages but Separating6. Solid by XOR (Eisemann and Decoret 2008).
@@ -52,6 +54,11 @@ enum class Backend : std::uint8_t {
     /// The hit counts of a VolumeVoxelizer, a byte a voxel, packed to bits: all slices in one pass
     /// of the geometry ([CLN11] 2). Any grid; Sampled.
     Volume,
+    /// Slicemap whose columns divide near/far ranges of their own, found by one more pass of the
+    /// geometry ([ED06] 2.3). Not for Solid.
+    LocalSlicemap,
+    /// Slicemap of 1024 slices a pass ([ED06] 2.4), in uniform or local ranges.
+    MrtSlicemap,
 };
 
 [[nodiscard]] LAMINA_API std::string_view name(Coverage coverage); ///< "sampled"
@@ -60,6 +67,39 @@ enum class Backend : std::uint8_t {
 struct VoxelizerDesc {
     Backend backend = Backend::Automatic;
     Coverage coverage = Coverage::Sampled;
+    /// Slices divide the near/far range of each column instead of the grid's. Always so for
+    /// LocalSlicemap, as asked for MrtSlicemap (and Automatic, which then takes it), an error for
+    /// the others and for Solid and Separating6.
+    bool localRanges = false;
+    /// Where the words go. Nothing: the one that the backend writes; for MrtSlicemap, which writes
+    /// to render targets (Texture) or by atomic operations of fragments (Buffer), the faster on the
+    /// device. The first create() on a device that needs to know measures it and waits for the GPU
+    /// meanwhile (some frames of 256 x 256 x 1024 voxels). Automatic takes MrtSlicemap with the
+    /// texture, so that shaders need not follow the device.
+    std::optional<VoxelStore> store{};
+};
+
+/// How voxelizeWith() sorts triangles into several grids.
+enum class Split : std::uint8_t {
+    None, ///< One grid.
+    /// Two grids: triangles that show the grid's camera their front (their corners turn
+    /// counter-clockwise in the space of their positions, so that a mirrored model matrix does not
+    /// turn a mesh inside out) and those that show their back ([ED06] 3.3). Edge-on: front.
+    Facing,
+    /// One to eight grids: each triangle goes to the one that its material's colorClass numbers,
+    /// if the material's orientation rule takes it ([ED06] 3.1). The material of a DrawSource's
+    /// triangle is that of its last vertex.
+    ColorClass,
+};
+
+struct VoxelizeOptions {
+    Split split = Split::None;
+    /// For Split::ColorClass: the material table, 1 to 4096 entries. Ids past its end use the last.
+    std::span<const Material> materials{};
+    /// With local ranges: what they enclose, instead of the sources themselves. Cheap hulls save
+    /// the extra pass over the sources. What sticks out of the hull's range, or stands in a column
+    /// where there is no hull, is not voxelized. Empty: the sources.
+    std::span<const GeometrySource> bounds{};
 };
 
 /// What a voxelizer can do on its device.
@@ -71,6 +111,8 @@ struct VoxelizerCapabilities {
     bool anyDistribution = false;           ///< Logarithmic and custom slices.
     bool drawSources = false;               ///< Geometry by DrawSource.
     VoxelStore store = VoxelStore::Texture; ///< What voxelize() makes of the grid.
+    bool localRanges = false;               ///< Grids get local ranges.
+    bool splits = false;                    ///< voxelizeWith() serves splits and bounds.
 };
 
 /// How far Coverage::Solid could tell inside from outside.
@@ -85,7 +127,7 @@ struct SolidReport {
 /// What one voxelize() call did; known without waiting for the GPU.
 struct VoxelizeStats {
     std::uint32_t sources = 0;
-    std::uint32_t passes = 0;        ///< Passes over the geometry.
+    std::uint32_t passes = 0; ///< Passes over the geometry; with local ranges one finds them.
     std::uint64_t meshTriangles = 0; ///< Triangles of the MeshView sources.
     std::uint64_t gridBytes = 0;     ///< GL memory of the grid.
 };
@@ -109,7 +151,8 @@ public:
     /// The backend in use; never Automatic. Where Backend::Automatic picks call by call, the one of
     /// the last voxelize() that succeeded, Overlap at first.
     [[nodiscard]] virtual Backend backend() const = 0;
-    /// Of the backend in use; `perspective` and `anyDistribution` hold for all of Automatic.
+    /// Of the backend in use; `perspective`, `anyDistribution` and `splits` hold for all
+    /// of Automatic.
     [[nodiscard]] virtual VoxelizerCapabilities capabilities() const = 0;
     /// Why the backend in use, in a sentence.
     [[nodiscard]] const std::string& reason() const { return mReason; }
@@ -125,6 +168,18 @@ public:
     [[nodiscard]] virtual Result<VoxelizeStats> voxelize(std::span<const GeometrySource> sources,
                                                          const GridTransform& transform,
                                                          VoxelGrid& out) = 0;
+
+    /// As voxelize(), for slicemap backends, with options: into one grid, or with a split into as
+    /// many as it takes. One pass of the geometry fills, for all grids, as many groups of 128 slices
+    /// as eight render targets hold (one group for Slicemap and LocalSlicemap). Split grids keep
+    /// their words in the texture store. With local ranges all grids share one near/far map;
+    /// together the grids of Split::Facing hold what one grid would.
+    /// Errors: as voxelize(), for all grids; InvalidArgument (a number of grids or a material table
+    /// that does not fit the split, bounds without local ranges); Unsupported (Overlap, a split with
+    /// Solid).
+    [[nodiscard]] virtual Result<VoxelizeStats>
+    voxelizeWith(std::span<const GeometrySource> sources, const GridTransform& transform,
+                 const VoxelizeOptions& options, std::span<VoxelGrid> grids);
 
     /// What the last voxelize() with Coverage::Solid found. Waits for the GPU.
     /// Errors: InvalidArgument (another coverage, or nothing voxelized yet).

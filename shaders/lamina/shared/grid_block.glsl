@@ -20,13 +20,16 @@ struct LaminaDrawConstants {
     dvec4 localToColumn[3];
     // near depth, 1 / (far - near), near depth * LAMINA_EYE_CUT, slices.
     dvec4 depthRange;
-    // Depth interval of the slices of this pass, widened by a rounding allowance; unused; unused.
+    // Depth interval of the slices of this pass, widened by a rounding allowance; number of the
+    // slices of this pass; words from the storage binding's start, which is aligned, to the pass's.
     dvec4 passDepths;
     // columns x, columns y, slices, LAMINA_GRID_* flags.
     uvec4 size;
-    // first slice of this pass, material id, unused, unused.
+    // First slice of this pass, material id, number of grids that the triangles are split among,
+    // LAMINA_SPLIT_*.
     uvec4 pass;
-    // Distance in pixels by which triangles are dilated before rasterization; unused.
+    // Distance in pixels by which triangles are dilated before rasterization; 1 where a triangle
+    // that turns counter-clockwise in columns is a front, -1 where it is a back; unused.
     vec4 dilation;
 };
 
