@@ -59,7 +59,8 @@ void report(benchmark::State& state, const TriangleMesh& mesh, const GridTransfo
 void registerVoxelizers(const Device& device, const Case& what);
 void registerVolumes(const Device& device, const Case& what);
 void registerEpipolar(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
-void registerSlicemapPasses(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
+void registerSlicemaps(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
+void registerRanges(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
 void registerHostOverlap(const Case& what);
 #if defined(LAMINA_HAS_OPENVDB)
 void registerOpenVdb(const Case& what);

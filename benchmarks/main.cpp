@@ -69,10 +69,13 @@ void registerAll(const Device& device) {
 #endif
         }
     for (const auto& mesh : meshes)
-        if (mesh->name == "knot_100k") {
-            bench::registerSlicemapPasses(device, mesh);
-            bench::registerEpipolar(device, mesh);
+        if (mesh->name == "knot_100k" || mesh->name == "armadillo") {
+            bench::registerSlicemaps(device, mesh);
+            bench::registerRanges(device, mesh);
         }
+    for (const auto& mesh : meshes)
+        if (mesh->name == "knot_100k")
+            bench::registerEpipolar(device, mesh);
     for (const auto& mesh : bench::scalingMeshes())
         for (const std::uint32_t resolution : {64u, 128u, 256u, 512u, 1024u})
             bench::registerVoxelizers(device, {mesh, resolution});

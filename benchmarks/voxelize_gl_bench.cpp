@@ -55,11 +55,13 @@ void registerRun(const Device& device, const std::string& name, std::shared_ptr<
 } // namespace
 
 void registerVoxelizers(const Device& device, const Case& what) {
-    constexpr VoxelizerDesc kRows[] = {
-        {Backend::Slicemap, Coverage::Filled},       {Backend::Slicemap, Coverage::Sampled},
-        {Backend::Slicemap, Coverage::Conservative}, {Backend::Slicemap, Coverage::Solid},
-        {Backend::Overlap, Coverage::Conservative},  {Backend::Overlap, Coverage::Separating6},
-        {Backend::Overlap, Coverage::Solid}};
+    constexpr VoxelizerDesc kRows[] = {{Backend::MrtSlicemap, Coverage::Filled},
+                                       {Backend::MrtSlicemap, Coverage::Sampled},
+                                       {Backend::MrtSlicemap, Coverage::Conservative},
+                                       {Backend::MrtSlicemap, Coverage::Solid},
+                                       {Backend::Overlap, Coverage::Conservative},
+                                       {Backend::Overlap, Coverage::Separating6},
+                                       {Backend::Overlap, Coverage::Solid}};
     for (const VoxelizerDesc& row : kRows)
         registerRun(device,
                     what.describe() + "/lamina " + std::string(name(row.backend)) + " " +
@@ -69,16 +71,37 @@ void registerVoxelizers(const Device& device, const Case& what) {
                     });
 }
 
-void registerSlicemapPasses(const Device& device, const std::shared_ptr<NamedMesh>& mesh) {
-    constexpr std::uint32_t kColumns = 512;
-    for (const std::uint32_t slices : {128u, 256u, 512u, 1024u})
-        registerRun(device,
-                    mesh->name + "/512x512 columns/lamina slicemap filled, " +
-                        std::to_string(slices) + " slices",
-                    mesh, {Backend::Slicemap, Coverage::Filled},
-                    [slices](const TriangleMesh& loaded) {
-                        return GridTransform::box(loaded.bounds(), {kColumns, kColumns, slices});
-                    });
+void registerSlicemaps(const Device& device, const std::shared_ptr<NamedMesh>& mesh) {
+    constexpr std::uint32_t kColumns = 1024;
+    struct Row {
+        const char* name;
+        std::uint32_t slices;
+        VoxelizerDesc desc;
+    };
+    const auto mrt = [](VoxelStore store, bool localRanges = false) {
+        return VoxelizerDesc{Backend::MrtSlicemap, Coverage::Sampled, localRanges, store};
+    };
+    const Row rows[] = {
+        {"slicemap 128", 128, {Backend::Slicemap}},
+        {"mrt_slicemap atomics 128", 128, mrt(VoxelStore::Buffer)},
+        {"slicemap 1024 in 8 passes", 1024, {Backend::Slicemap}},
+        {"mrt_slicemap targets 1024", 1024, mrt(VoxelStore::Texture)},
+        {"mrt_slicemap atomics 1024", 1024, mrt(VoxelStore::Buffer)},
+        {"local_slicemap 128", 128, {Backend::LocalSlicemap}},
+        {"mrt_slicemap targets local 1024", 1024, mrt(VoxelStore::Texture, true)},
+        {"mrt_slicemap atomics local 1024", 1024, mrt(VoxelStore::Buffer, true)},
+    };
+    for (const Coverage coverage : {Coverage::Sampled, Coverage::Filled})
+        for (const Row& row : rows) {
+            VoxelizerDesc desc = row.desc;
+            desc.coverage = coverage;
+            registerRun(
+                device,
+                mesh->name + "/1024x1024 columns, " + std::string(name(coverage)) + "/" + row.name,
+                mesh, desc, [slices = row.slices](const TriangleMesh& loaded) {
+                    return GridTransform::box(loaded.bounds(), {kColumns, kColumns, slices});
+                });
+        }
 }
 
 } // namespace lamina::bench
