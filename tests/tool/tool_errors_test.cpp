@@ -133,12 +133,11 @@ TEST_F(ToolErrors, Words) {
     expectFailure({mesh, "--up", "auto", "-o", out}, kCommandLine, {"--up", "x, y, z"});
 }
 
-TEST_F(ToolErrors, WordsOfLaterVersionsSayWhatIsServed) {
-    for (const char* backend : {"local_slicemap", "mrt_slicemap"})
-        expectFailure({mesh, "--backend", backend, "-o", out}, kUnsupported,
-                      {backend, "not served by this version", "auto, slicemap, volume, overlap"});
+TEST_F(ToolErrors, MethodsThatDoNotFitSayWhatIsServed) {
     expectFailure({mesh, "--backend", "slicemap", "--coverage", "separating6", "-o", out},
                   kUnsupported, {"separating6", "slicemap", "overlap"});
+    expectFailure({mesh, "--backend", "local_slicemap", "--coverage", "solid", "-o", out},
+                  kUnsupported, {"solid", "conservative or filled", "overlap"});
 }
 
 TEST_F(ToolErrors, OutputsAreCheckedBeforeTheMeshIsRead) {

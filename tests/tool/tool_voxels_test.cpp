@@ -284,6 +284,21 @@ TEST(ToolVoxels, BothContextsGiveTheSameBytes) {
     EXPECT_EQ(readBytes(folder / "egl.npy"), readBytes(folder / "osmesa.npy"));
 }
 
+// mrt_slicemap sets the slicemap's voxels; local_slicemap, resampled for files, at least those.
+TEST(ToolVoxels, SlicemapBackendsAgree) {
+    const TemporaryFolder folder;
+    writePly(folder / "knot.ply", reference::makeTorusKnot({0, 0, 0}, 1.3f, 0.4f, 2, 3, 200, 32));
+    std::map<std::string, std::uint64_t> counts;
+    for (const std::string backend : {"slicemap", "mrt_slicemap", "local_slicemap"})
+        counts[backend] = voxelsOf({folder / "knot.ply", "-r", "200", "--coverage", "filled",
+                                    "--backend", backend},
+                                   folder / (backend + ".npy"))
+                              .setCount();
+    EXPECT_EQ(readBytes(folder / "slicemap.npy"), readBytes(folder / "mrt_slicemap.npy"));
+    EXPECT_GE(counts["local_slicemap"], counts["slicemap"]);
+    EXPECT_LT(counts["local_slicemap"], counts["slicemap"] * 2);
+}
+
 TEST(ToolVoxels, DefaultsAreResolution256ConservativeAndTheBestAxis) {
     const TemporaryFolder folder;
     writePly(folder / "slab.ply", reference::makeBox({0, 0, 0}, {1, 4, 4}));

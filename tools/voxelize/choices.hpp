@@ -34,8 +34,8 @@ inline constexpr std::array kCoverages{
 inline constexpr std::array kBackends{
     Choice<Backend>{"auto", Backend::Automatic},
     Choice<Backend>{"slicemap", Backend::Slicemap},
-    Choice<Backend>{"local_slicemap"},
-    Choice<Backend>{"mrt_slicemap"},
+    Choice<Backend>{"local_slicemap", Backend::LocalSlicemap},
+    Choice<Backend>{"mrt_slicemap", Backend::MrtSlicemap},
     Choice<Backend>{"volume", Backend::Volume},
     Choice<Backend>{"overlap", Backend::Overlap},
 };

@@ -53,7 +53,7 @@ public:
         std::ranges::nth_element(times,
                                  times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2));
 
-        const BitGrid bits = require(grid.download());
+        const BitGrid bits = downloadUniform(grid);
         return ComparedMethod{std::string(name(coverage)),
                               std::string(name(backend)),
                               times[times.size() / 2],

@@ -60,7 +60,7 @@ Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted, 
         return done;
     });
     BitGrid bits =
-        clock.run("download", "reading voxels back", [&] { return require(grid.download()); });
+        clock.run("download", "reading voxels back", [&] { return downloadUniform(grid); });
 
     record.voxels = VoxelFacts{std::string(name(voxelizer->backend())),
                                voxelizer->reason(),

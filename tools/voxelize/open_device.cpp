@@ -46,4 +46,9 @@ OpenDevice openDevice(const Request& request, StageClock& clock, RunRecord& reco
     return {std::move(context), std::move(device)};
 }
 
+BitGrid downloadUniform(const VoxelGrid& grid) {
+    BitGrid bits = require(grid.download());
+    return bits.hasLocalRanges() ? require(bits.toUniform(bits.size().z)) : std::move(bits);
+}
+
 } // namespace lamina::tool

@@ -4,6 +4,7 @@
 #include "run_record.hpp"
 
 #include <lamina/gl/device.hpp>
+#include <lamina/grid/voxel_grid.hpp>
 #include <lamina/headless/context.hpp>
 
 namespace lamina::tool {
@@ -19,5 +20,9 @@ struct OpenDevice {
 
 /// Fills renderer of `record`. `clock` must outlive the result. Throws Failure.
 [[nodiscard]] OpenDevice openDevice(const Request& request, StageClock& clock, RunRecord& record);
+
+/// The voxels of a grid as files and pictures can hold them: columns with ranges of their own are
+/// resampled into as many slices of the whole range. Waits for the GPU. Throws Failure.
+[[nodiscard]] BitGrid downloadUniform(const VoxelGrid& grid);
 
 } // namespace lamina::tool
