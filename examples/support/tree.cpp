@@ -12,12 +12,12 @@ namespace example {
 namespace {
 
 constexpr int kLevels = 5;
-constexpr int kLeavesPerTwig = 34;
 
 class Grower {
 public:
-    explicit Grower(std::uint32_t seed)
-        : mRandom(seed) {}
+    explicit Grower(const TreeDesc& desc)
+        : mDesc(desc)
+        , mRandom(desc.seed) {}
 
     /// A branch from `base`, and what grows from it. level: 0 is the trunk.
     void grow(const glm::vec3& base, const glm::vec3& direction, float length, float radius,
@@ -31,6 +31,7 @@ private:
     }
     void addLeaf(const glm::vec3& stem, float size);
 
+    TreeDesc mDesc;
     Random mRandom;
 };
 
@@ -64,9 +65,9 @@ void Grower::grow(const glm::vec3& base, const glm::vec3& direction, float lengt
     addTube(tree.wood, path, radii, level == 0 ? 40 : level == 1 ? 20 : 8);
 
     if (level + 2 >= kLevels)
-        for (int i = 0; i < kLeavesPerTwig; ++i) {
+        for (int i = 0; i < mDesc.leavesPerTwig; ++i) {
             const auto piece = static_cast<std::size_t>(mRandom(1.0f, kPoints - 0.001f));
-            addLeaf(path[piece] + randomVector(0.16f), mRandom(0.13f, 0.20f));
+            addLeaf(path[piece] + randomVector(0.16f), mRandom(0.65f, 1.0f) * mDesc.leafLength);
         }
     if (level + 1 == kLevels)
         return;
@@ -92,8 +93,8 @@ void Grower::grow(const glm::vec3& base, const glm::vec3& direction, float lengt
 
 } // namespace
 
-Tree makeTree(std::uint32_t seed) {
-    Grower grower(seed);
+Tree makeTree(const TreeDesc& desc) {
+    Grower grower(desc);
     grower.grow({0.0f, -0.1f, 0.0f}, glm::normalize(glm::vec3(0.05f, 1.0f, 0.02f)), 2.6f, 0.26f, 0);
     return std::move(grower.tree);
 }

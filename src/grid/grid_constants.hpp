@@ -1,5 +1,6 @@
 #pragma once
 
+#include <lamina/core/export.hpp>
 #include <lamina/grid/grid_transform.hpp>
 
 #include <glm/mat4x4.hpp>
@@ -33,7 +34,7 @@ static_assert(offsetof(shared::LaminaDrawConstants, depthRange) == 96 &&
               "std140");
 
 /// hasLocalRanges: sets LAMINA_GRID_LOCAL.
-[[nodiscard]] GridBlock makeGridBlock(const GridTransform& transform, bool hasLocalRanges = false);
+[[nodiscard]] LAMINA_API GridBlock makeGridBlock(const GridTransform& transform, bool hasLocalRanges = false);
 
 /// LAMINA_GRID_* flags of a grid.
 [[nodiscard]] std::uint32_t gridFlags(const GridTransform& transform);

@@ -34,7 +34,7 @@ void setLight(shared::LaminaEpipolarMap& map, const EpipolarTransform& transform
               std::uint32_t vsv);
 
 /// Draws depth maps of geometry into the layers of one texture.
-class DepthMapRenderer {
+class LAMINA_API DepthMapRenderer {
 public:
     DepthMapRenderer(std::shared_ptr<gl::DeviceState> device, std::uint32_t texels);
 

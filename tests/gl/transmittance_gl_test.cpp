@@ -1,0 +1,2 @@
+// The contract of lamina/transmittance.glsl and lamina::transmittance.
+#include "gl/support/transmittance_probe.hpp"
