@@ -235,16 +235,17 @@ float laminaOpaqueTransmittance(vec3 world, vec3 normal) {
     float empty = laminaTransmittanceBlock.scalars.y;
     float nearer = laminaTransmittanceBlock.scalars.z;
     LaminaBoxFilter box = laminaBoxFilter(place.xy, laminaTransmittanceBlock.lookup.y);
-    float lit = 0.0;
+    vec2 lit = vec2(0.0); // Weights of lit texels, of all.
     for (int y = 0; y < box.count.y; ++y)
         for (int x = 0; x < box.count.x; ++x) {
             ivec2 texel = box.first + ivec2(x, y);
             float weight = laminaBoxWeight(box, texel);
             float stored = texelFetch(laminaTransmittanceOpaque, ivec3(clamp(texel, ivec2(0), texels - 1), layer), 0).r;
             float depth = place.z + dot(slope, vec2(texel) + 0.5 - place.xy);
-            lit += stored == empty || nearer * depth <= nearer * stored ? weight : 0.0;
+            bool isLit = stored == empty || nearer * depth <= nearer * stored;
+            lit += vec2(isLit ? weight : 0.0, weight);
         }
-    return lit;
+    return lit.x / lit.y;
 }
 
 // Is a world point outside a spot's cone?

@@ -368,6 +368,8 @@ Result<TransmittanceStats> Transmittance::prepare(const TransmittanceLight& ligh
 }
 
 Result<std::uint32_t> Transmittance::apply(const TransmittanceReceiver& receiver) {
+    if (auto view = viewpoint(receiver.view); !view)
+        return view.error();
     if (auto reserved = mImpl->reserveTarget(receiver.view.size); !reserved)
         return reserved.error();
     if (auto applied = apply(receiver, mImpl->target.id()); !applied)

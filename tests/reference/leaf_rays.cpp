@@ -44,8 +44,8 @@ std::vector<SurfacePoint> sampleSurface(const TriangleMesh& mesh, std::size_t co
         return glm::dvec3(mesh.positions[mesh.triangles[triangle][i]]);
     };
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        area += 0.5 * glm::length(glm::cross(corner(i, 1) - corner(i, 0),
-                                             corner(i, 2) - corner(i, 0)));
+        area +=
+            0.5 * glm::length(glm::cross(corner(i, 1) - corner(i, 0), corner(i, 2) - corner(i, 0)));
         areas.push_back(area);
     }
     std::mt19937 random(seed);
@@ -58,8 +58,7 @@ std::vector<SurfacePoint> sampleSurface(const TriangleMesh& mesh, std::size_t co
         const double part = unit();
         const glm::dvec3 a = corner(i, 0), b = corner(i, 1), c = corner(i, 2);
         points.push_back({(1.0 - root) * a + root * ((1.0 - part) * b + part * c),
-                          glm::normalize(glm::cross(b - a, c - a)),
-                          static_cast<std::uint32_t>(i)});
+                          glm::normalize(glm::cross(b - a, c - a)), static_cast<std::uint32_t>(i)});
     }
     return points;
 }
@@ -130,8 +129,7 @@ unsigned LeafRays::between(const SurfacePoint& point, const glm::dvec3& toLight)
 }
 
 const IdealSlicemap::Column& IdealSlicemap::column(const glm::uvec2& place) {
-    const auto [found, isNew] =
-        mColumns.try_emplace(std::uint64_t{place.y} << 32u | place.x);
+    const auto [found, isNew] = mColumns.try_emplace(std::uint64_t{place.y} << 32u | place.x);
     Column& made = found->second;
     if (!isNew)
         return made;
@@ -173,8 +171,8 @@ unsigned IdealSlicemap::countNearer(const glm::dvec3& point) {
     if (place->depth > far)
         return static_cast<unsigned>(here.slices.size());
     const auto slice = sliceOf(place->depth, here);
-    return static_cast<unsigned>(
-        std::ranges::lower_bound(here.slices, slice.value_or(0)) - here.slices.begin());
+    return static_cast<unsigned>(std::ranges::lower_bound(here.slices, slice.value_or(0)) -
+                                 here.slices.begin());
 }
 
 } // namespace lamina::reference

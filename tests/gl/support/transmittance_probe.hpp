@@ -40,13 +40,12 @@ protected:
     }
 
     /// T at points, by the host's shader.
-    std::vector<glm::vec3> probe(Transmittance& transmittance,
-                                 std::span<const ProbePoint> points) {
+    std::vector<glm::vec3> probe(Transmittance& transmittance, std::span<const ProbePoint> points) {
         constexpr std::uint32_t kBlock = 2, kUnit = 3;
-        const GLuint program = buildProgram(
-            {{GL_COMPUTE_SHADER, "#version 450 core\n" +
-                                     transmittance.shaderDefines(kBlock, kUnit) +
-                                     shaderSource("lamina/transmittance.glsl").value() + R"(
+        const GLuint program =
+            buildProgram({{GL_COMPUTE_SHADER,
+                           "#version 450 core\n" + transmittance.shaderDefines(kBlock, kUnit) +
+                               shaderSource("lamina/transmittance.glsl").value() + R"(
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };
 layout(std430, binding = 1) buffer Results { vec4 results[]; };

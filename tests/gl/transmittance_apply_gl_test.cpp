@@ -1,0 +1,430 @@
+// apply() over what a host has drawn, host shadow maps, GL state and errors.
+
+#include "gl/support/gl_state.hpp"
+#include "gl/support/transmittance_probe.hpp"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <gmock/gmock.h>
+#include <reference/shapes.hpp>
+
+#include <cmath>
+#include <random>
+
+namespace lamina {
+namespace {
+
+constexpr glm::uvec2 kSize{160, 120};
+
+constexpr const char* kVertex = R"(#version 450 core
+layout(location = 0) uniform mat4 worldToClip;
+layout(location = 0) in vec3 position;
+out vec3 world;
+void main() {
+    world = position;
+    gl_Position = worldToClip * vec4(position, 1.0);
+}
+)";
+
+/// A host that draws leaves, a ball and a floor with its own forward shader.
+class TransmittanceApplyGlTest : public test::TransmittanceGlTest {
+protected:
+    void SetUp() override {
+        TransmittanceGlTest::SetUp();
+        // Leaves of a few columns, so that most pixels are far from any of their edges.
+        mLeaves = reference::makeTriangleSoup({{-2, 1, -2}, {2, 3, 2}}, 120, 1.2f, 5);
+        mOpaque = reference::makeIcosphere({0.5f, 2.2f, 0.3f}, 0.7f, 3);
+        mScene = reference::merged(reference::merged(mLeaves, mOpaque),
+                                   reference::makePlane({0, 0, 0}, {0, 1, 0}, 12.0f));
+        mLeafBuffers.emplace(MeshBuffers::upload(device(), mLeaves).value());
+        mOpaqueBuffers.emplace(MeshBuffers::upload(device(), mOpaque).value());
+        mSceneBuffers.emplace(MeshBuffers::upload(device(), mScene).value());
+        mLeafSource = mLeafBuffers->view();
+        mOpaqueSource = mOpaqueBuffers->view();
+        mView.worldToClip =
+            glm::perspective(0.9, static_cast<double>(kSize.x) / kSize.y, 0.5, 40.0) *
+            glm::lookAt(glm::dvec3(4, 5, 7), glm::dvec3(0, 1, 0), glm::dvec3(0, 1, 0));
+        mView.size = kSize;
+        mLight.direction = {0.3, -1.0, 0.2};
+    }
+
+    TransmittanceCasters casters() const {
+        TransmittanceCasters casters;
+        casters.leaves = {&mLeafSource, 1};
+        casters.opaque = {&mOpaqueSource, 1};
+        casters.bounds = {{-2.7, 0.3, -2.7}, {2.7, 3.7, 2.7}};
+        return casters;
+    }
+
+    gl::Texture texture(GLenum format, const glm::uvec2& size = kSize) {
+        auto texture = gl::Texture::create(device().state(), "test", GL_TEXTURE_2D);
+        gl().TextureStorage2D(texture.id(), 1, format, static_cast<GLsizei>(size.x),
+                              static_cast<GLsizei>(size.y));
+        return texture;
+    }
+
+    /// Draws a mesh with the host's program into a framebuffer, depth cleared to 1.
+    void drawMesh(GLuint program, GLuint framebuffer, const glm::uvec2& size,
+                  const glm::dmat4& worldToClip, const MeshView& mesh) {
+        GLuint vertexArray = 0;
+        gl().CreateVertexArrays(1, &vertexArray);
+        gl().VertexArrayVertexBuffer(vertexArray, 0, mesh.vertexBuffer,
+                                     static_cast<GLintptr>(mesh.positionOffsetBytes),
+                                     static_cast<GLsizei>(mesh.vertexStrideBytes));
+        gl().VertexArrayElementBuffer(vertexArray, mesh.indexBuffer);
+        gl().EnableVertexArrayAttrib(vertexArray, 0);
+        gl().VertexArrayAttribFormat(vertexArray, 0, 3, GL_FLOAT, GL_FALSE, 0);
+        gl().VertexArrayAttribBinding(vertexArray, 0, 0);
+        gl().BindVertexArray(vertexArray);
+        gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+        gl().Viewport(0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y));
+        gl().Enable(GL_DEPTH_TEST);
+        constexpr GLfloat kFarthest = 1.0f;
+        gl().ClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &kFarthest);
+        gl().UseProgram(program);
+        const glm::mat4 matrix(worldToClip);
+        gl().ProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, glm::value_ptr(matrix));
+        gl().DrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indexCount), GL_UNSIGNED_INT,
+                          reinterpret_cast<const void*>(mesh.indexOffsetBytes));
+        gl().Disable(GL_DEPTH_TEST);
+        gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+        gl().UseProgram(0);
+        gl().BindVertexArray(0);
+        gl().DeleteVertexArrays(1, &vertexArray);
+    }
+
+    /// Depth, normals and the forward shader's T of the scene.
+    struct Drawn {
+        gl::Texture depth, normals, unsignedNormals, forward;
+    };
+
+    Drawn drawScene(Transmittance& transmittance) {
+        constexpr std::uint32_t kBlock = 1, kUnit = 4;
+        const GLuint program =
+            buildProgram({{GL_VERTEX_SHADER, kVertex},
+                          {GL_FRAGMENT_SHADER,
+                           "#version 450 core\n" + transmittance.shaderDefines(kBlock, kUnit) +
+                               shaderSource("lamina/transmittance.glsl").value() + R"(
+in vec3 world;
+layout(location = 0) out vec4 normals;
+layout(location = 1) out vec4 unsignedNormals;
+layout(location = 2) out vec4 forward;
+void main() {
+    vec3 normal = normalize(cross(dFdx(world), dFdy(world)));
+    normals = vec4(normal, 0.0);
+    unsignedNormals = vec4(normal * 0.5 + 0.5, 0.0);
+    forward = vec4(laminaTransmittance(world, normal), 1.0);
+}
+)"}});
+        Drawn drawn{texture(GL_DEPTH_COMPONENT32F), texture(GL_RGBA32F), texture(GL_RGBA16),
+                    texture(GL_RGBA32F)};
+        auto framebuffer = gl::Framebuffer::create(device().state(), "test");
+        gl().NamedFramebufferTexture(framebuffer.id(), GL_DEPTH_ATTACHMENT, drawn.depth.id(), 0);
+        constexpr GLenum kOutputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
+                                       GL_COLOR_ATTACHMENT2};
+        const GLuint colors[] = {drawn.normals.id(), drawn.unsignedNormals.id(),
+                                 drawn.forward.id()};
+        for (int i = 0; i < 3; ++i)
+            gl().NamedFramebufferTexture(framebuffer.id(), kOutputs[i], colors[i], 0);
+        gl().NamedFramebufferDrawBuffers(framebuffer.id(), 3, kOutputs);
+        constexpr GLfloat kOne[] = {1.0f, 1.0f, 1.0f, 1.0f};
+        gl().ClearNamedFramebufferfv(framebuffer.id(), GL_COLOR, 2, kOne);
+        transmittance.bind(kBlock, kUnit);
+        drawMesh(program, framebuffer.id(), kSize, mView.worldToClip, mSceneBuffers->view());
+        gl().DeleteProgram(program);
+        return drawn;
+    }
+
+    std::vector<glm::vec4> read(GLuint texture) {
+        std::vector<glm::vec4> pixels(kSize.x * kSize.y, glm::vec4(-7.0f));
+        gl().GetTextureImage(texture, 0, GL_RGBA, GL_FLOAT,
+                             static_cast<GLsizei>(pixels.size() * sizeof(glm::vec4)),
+                             pixels.data());
+        return pixels;
+    }
+
+    static double shareBeyond(const std::vector<glm::vec4>& first,
+                              const std::vector<glm::vec4>& second, float tolerance) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < first.size(); ++i)
+            for (int channel = 0; channel < 4; ++channel)
+                if (!(std::abs(first[i][channel] - second[i][channel]) <= tolerance)) {
+                    ++count;
+                    break;
+                }
+        return static_cast<double>(count) / static_cast<double>(first.size());
+    }
+
+    TriangleMesh mLeaves, mOpaque, mScene;
+    std::optional<MeshBuffers> mLeafBuffers, mOpaqueBuffers, mSceneBuffers;
+    GeometrySource mLeafSource, mOpaqueSource;
+    View mView;
+    TransmittanceLight mLight;
+};
+
+TEST_F(TransmittanceApplyGlTest, AgreesWithTheEnginesForwardShader) {
+    struct Case {
+        TransmittanceModel model;
+        bool local;
+        LightKind kind;
+    };
+    for (const Case& test : {Case{TransmittanceModel::LeafCount, false, LightKind::Directional},
+                             Case{TransmittanceModel::LeafCount, true, LightKind::Directional},
+                             Case{TransmittanceModel::Absorption, false, LightKind::Directional},
+                             Case{TransmittanceModel::LeafCount, true, LightKind::Spot},
+                             Case{TransmittanceModel::LeafCount, false, LightKind::Point},
+                             Case{TransmittanceModel::Absorption, false, LightKind::Point}}) {
+        SCOPED_TRACE(std::to_string(static_cast<int>(test.model)) + " light " +
+                     std::to_string(static_cast<int>(test.kind)) + (test.local ? " local" : ""));
+        TransmittanceDesc desc;
+        desc.model = test.model;
+        desc.size = {64, 64, 64};
+        desc.localRanges = test.local;
+        desc.opaqueMapTexels = 256;
+        desc.maxFaces = test.kind == LightKind::Point ? 6 : 1;
+        auto transmittance = Transmittance::create(device(), desc).value();
+        mLight.kind = test.kind;
+        mLight.position =
+            test.kind == LightKind::Point ? glm::dvec3(-0.7, 2.4, -0.6) : glm::dvec3(0.0, 6.0, 0.0);
+        mLight.direction = {0.3, -1.0, 0.2};
+        std::vector<Material> materials(1);
+        materials[0].absorption = 0.3f;
+        TransmittanceCasters all = casters();
+        all.materials = materials;
+        const auto stats = transmittance.prepare(mLight, all);
+        ASSERT_TRUE(stats) << stats.error().text;
+        const Drawn drawn = drawScene(transmittance);
+        const auto forward = read(drawn.forward.id());
+
+        TransmittanceReceiver receiver{mView, drawn.depth.id(), drawn.normals.id()};
+        const auto applied = transmittance.apply(receiver);
+        ASSERT_TRUE(applied) << applied.error().text;
+        const auto deferred = read(*applied);
+        // World points from the depth buffer are off by its rounding: at the edges of columns, of
+        // local ranges and of the opaque map that moves a few pixels to the other side.
+        EXPECT_LT(shareBeyond(forward, deferred, 2e-3f), 0.01);
+
+        const gl::Texture own = texture(GL_RGBA32F);
+        ASSERT_TRUE(transmittance.apply(receiver, own.id()));
+        EXPECT_EQ(shareBeyond(read(own.id()), deferred, 1e-3f), 0.0); // half floats: 2^-11
+        receiver.normalTexture = drawn.unsignedNormals.id();
+        receiver.normalEncoding = NormalEncoding::Unsigned;
+        ASSERT_TRUE(transmittance.apply(receiver, own.id()));
+        EXPECT_LT(shareBeyond(read(own.id()), deferred, 2e-3f), 0.01);
+        receiver.normalTexture = 0;
+        ASSERT_TRUE(transmittance.apply(receiver, own.id()));
+        // At the outlines of surfaces normals from depths are wrong.
+        EXPECT_LT(shareBeyond(read(own.id()), deferred, 1e-2f), 0.12);
+
+        std::size_t lit = 0, dark = 0, between = 0;
+        for (const glm::vec4& value : deferred) {
+            lit += value.x == 1.0f ? 1 : 0;
+            dark += value.x == 0.0f ? 1 : 0;
+            between += value.x > 0.0f && value.x < 1.0f ? 1 : 0;
+        }
+        EXPECT_GT(lit, deferred.size() / 50);
+        EXPECT_GT(between, deferred.size() / 20);
+        EXPECT_GT(dark, deferred.size() / 100);
+    }
+}
+
+TEST_F(TransmittanceApplyGlTest, HostShadowMapsOfAllKinds) {
+    const GLuint program = buildProgram(
+        {{GL_VERTEX_SHADER, kVertex}, {GL_FRAGMENT_SHADER, "#version 450 core\nvoid main() {}\n"}});
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(-3.0, 3.0);
+    std::vector<test::ProbePoint> points;
+    for (int i = 0; i < 20000; ++i)
+        points.push_back({{unit(random), unit(random), unit(random)}});
+    auto transmittance =
+        Transmittance::create(device(), {.size = {64, 64, 64}, .maxFaces = 6}).value();
+    constexpr glm::uvec2 kMap{512, 512};
+    auto framebuffer = gl::Framebuffer::create(device().state(), "test");
+    gl().NamedFramebufferDrawBuffer(framebuffer.id(), GL_NONE);
+    const MeshView opaque = mOpaqueBuffers->view();
+
+    for (const DepthMapKind kind :
+         {DepthMapKind::Texture2D, DepthMapKind::TextureArray, DepthMapKind::TextureCube}) {
+        SCOPED_TRACE(static_cast<int>(kind));
+        LightDepthMap map;
+        map.kind = kind;
+        GLuint id = 0;
+        if (kind == DepthMapKind::TextureCube) {
+            mLight.kind = LightKind::Point;
+            mLight.position = {-1.1, 2.0, -0.8};
+            map.faceProjection = glm::perspective(glm::radians(90.0), 1.0, 0.05, 20.0);
+            gl().CreateTextures(GL_TEXTURE_CUBE_MAP, 1, &id);
+            gl().TextureStorage2D(id, 1, GL_DEPTH_COMPONENT24, kMap.x, kMap.y);
+            constexpr glm::dvec3 kAlong[] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                             {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+            constexpr glm::dvec3 kUp[] = {{0, -1, 0}, {0, -1, 0}, {0, 0, 1},
+                                          {0, 0, -1}, {0, -1, 0}, {0, -1, 0}};
+            for (int face = 0; face < 6; ++face) {
+                gl().NamedFramebufferTextureLayer(framebuffer.id(), GL_DEPTH_ATTACHMENT, id, 0,
+                                                  face);
+                drawMesh(program, framebuffer.id(), kMap,
+                         map.faceProjection * glm::lookAt(mLight.position,
+                                                          mLight.position + kAlong[face],
+                                                          kUp[face]),
+                         opaque);
+            }
+        } else {
+            mLight.direction = {0.3, -1.0, 0.2};
+            map.worldToClip =
+                glm::ortho(-5.0, 5.0, -4.0, 6.0, 1.0, 12.0) *
+                glm::lookAt(-6.0 * mLight.direction, glm::dvec3(0.0), glm::dvec3(0, 0, 1));
+            const bool isArray = kind == DepthMapKind::TextureArray;
+            if (isArray) {
+                gl().CreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
+                gl().TextureStorage3D(id, 1, GL_DEPTH_COMPONENT32F, kMap.x, kMap.y, 3);
+                map.layer = 1;
+                gl().NamedFramebufferTextureLayer(framebuffer.id(), GL_DEPTH_ATTACHMENT, id, 0, 1);
+                drawMesh(program, framebuffer.id(), kMap, map.worldToClip, opaque);
+            } else {
+                // As glTexImage2D leaves it, larger than the part in use.
+                const gl::Texture part = texture(GL_DEPTH_COMPONENT16, kMap);
+                gl().NamedFramebufferTexture(framebuffer.id(), GL_DEPTH_ATTACHMENT, part.id(), 0);
+                drawMesh(program, framebuffer.id(), kMap, map.worldToClip, opaque);
+                gl().GenTextures(1, &id);
+                gl().BindTexture(GL_TEXTURE_2D, id);
+                gl().TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT16, 700, 600, 0,
+                                GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+                gl().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+                gl().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+                gl().BindTexture(GL_TEXTURE_2D, 0);
+                map.firstTexel = {100, 50};
+                map.size = kMap;
+                gl().CopyImageSubData(part.id(), GL_TEXTURE_2D, 0, 0, 0, 0, id, GL_TEXTURE_2D, 0,
+                                      100, 50, 0, kMap.x, kMap.y, 1);
+            }
+        }
+        map.texture = id;
+        TransmittanceCasters all = casters();
+        auto stats = transmittance.prepare(mLight, all);
+        ASSERT_TRUE(stats) << stats.error().text;
+        const auto own = probe(transmittance, points);
+        all.opaque = {};
+        all.opaqueMap = &map;
+        stats = transmittance.prepare(mLight, all);
+        ASSERT_TRUE(stats) << stats.error().text;
+        gl().DeleteTextures(1, &id);
+        const auto host = probe(transmittance, points);
+        std::size_t differing = 0, dark = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            differing += std::abs(own[i].x - host[i].x) > 0.5f * own[i].x + 1e-3f ? 1 : 0;
+            dark += host[i].x == 0.0f ? 1 : 0;
+        }
+        // Only where the ball's outline is filtered through other texels.
+        EXPECT_LT(differing, points.size() / 100);
+        EXPECT_GT(dark, points.size() / 100);
+
+        map.size = {5000, 1};
+        map.texture = mView.size.x + 12345;
+        const auto refused = transmittance.prepare(mLight, all);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
+    }
+    gl().DeleteProgram(program);
+}
+
+TEST_F(TransmittanceApplyGlTest, LeavesOddStateAsItWas) {
+    for (const TransmittanceModel model :
+         {TransmittanceModel::LeafCount, TransmittanceModel::Absorption}) {
+        const gl::Texture depth = texture(GL_DEPTH_COMPONENT32F);
+        LightDepthMap map;
+        map.texture = depth.id();
+        const test::OddGlState odd(gl());
+        const auto before = test::readGlState(gl());
+        auto transmittance =
+            Transmittance::create(device(), {.model = model, .size = {32, 32, 64}}).value();
+        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());
+        ASSERT_TRUE(transmittance.prepare(mLight, casters()));
+        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());
+        TransmittanceCasters hosts = casters();
+        hosts.opaqueMap = &map;
+        ASSERT_TRUE(transmittance.prepare(mLight, hosts));
+        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());
+        ASSERT_TRUE(transmittance.apply({mView, depth.id()}));
+        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());
+    }
+}
+
+TEST_F(TransmittanceApplyGlTest, ErrorsSayWhatIsWrong) {
+    const auto codeOf = [&](const TransmittanceDesc& desc) {
+        const auto made = Transmittance::create(device(), desc);
+        return made ? std::string() : made.error().text;
+    };
+    EXPECT_EQ(codeOf({}), "");
+    EXPECT_THAT(codeOf({.classes = 0}), testing::HasSubstr("at least one class"));
+    EXPECT_THAT(codeOf({.classes = 2, .maxFaces = 6}), testing::HasSubstr("at most 8 grids"));
+    EXPECT_THAT(codeOf({.maxFaces = 7}), testing::HasSubstr("1 to 6 faces"));
+    EXPECT_THAT(codeOf({.opaqueMapTexels = 0}), testing::HasSubstr("opaque shadow map"));
+    EXPECT_THAT(codeOf({.model = TransmittanceModel::Absorption, .localRanges = true}),
+                testing::HasSubstr("local ranges"));
+
+    auto transmittance = Transmittance::create(device(), {.size = {32, 32, 32}}).value();
+    const gl::Texture depth = texture(GL_DEPTH_COMPONENT32F);
+    EXPECT_THAT(transmittance.apply({mView, depth.id()}).error().text,
+                testing::HasSubstr("prepare()"));
+    TransmittanceSettings settings;
+    settings.attenuation[3].y = 1.5f;
+    EXPECT_EQ(transmittance.setSettings(settings).error().code, ErrorCode::InvalidArgument);
+    settings = {};
+    settings.filterWidth = 8.0f;
+    EXPECT_EQ(transmittance.setSettings(settings).error().code, ErrorCode::InvalidArgument);
+    EXPECT_EQ(transmittance.settings().filterWidth, 1.0f);
+
+    TransmittanceCasters wrong = casters();
+    wrong.bounds = {};
+    EXPECT_THAT(transmittance.prepare(mLight, wrong).error().text, testing::HasSubstr("bounds"));
+    TransmittanceLight light = mLight;
+    light.direction = glm::dvec3(0.0);
+    EXPECT_THAT(transmittance.prepare(light, casters()).error().text,
+                testing::HasSubstr("direction"));
+    light.kind = LightKind::Spot;
+    light.direction = mLight.direction;
+    light.coneAngle = 1.5;
+    EXPECT_THAT(transmittance.prepare(light, casters()).error().text,
+                testing::HasSubstr("cone angle"));
+    light.coneAngle = 0.5;
+    light.near = 0.0;
+    EXPECT_THAT(transmittance.prepare(light, casters()).error().text, testing::HasSubstr("near"));
+    MeshView broken = std::get<MeshView>(mLeafSource);
+    broken.indexCount *= 2;
+    const GeometrySource sources[] = {broken};
+    wrong = casters();
+    wrong.leaves = sources;
+    EXPECT_EQ(transmittance.prepare(mLight, wrong).error().code, ErrorCode::InvalidArgument);
+
+    ASSERT_TRUE(transmittance.prepare(mLight, casters()));
+    EXPECT_THAT(transmittance.apply({mView, 0}).error().text, testing::HasSubstr("depth"));
+    const gl::Texture small = texture(GL_RGBA16F, {8, 8});
+    EXPECT_THAT(transmittance.apply({mView, depth.id(), small.id()}).error().text,
+                testing::HasSubstr("8 x 8"));
+    EXPECT_THAT(transmittance.apply({mView, depth.id()}, small.id()).error().text,
+                testing::HasSubstr("target"));
+    View view = mView;
+    view.size = {0, 0};
+    EXPECT_EQ(transmittance.apply({view, depth.id()}).error().code, ErrorCode::InvalidArgument);
+    EXPECT_TRUE(transmittance.apply({mView, depth.id()}));
+}
+
+TEST_F(TransmittanceApplyGlTest, BindTakesWhatItSays) {
+    auto transmittance =
+        Transmittance::create(device(), {.size = {32, 32, 32}, .localRanges = true, .classes = 3})
+            .value();
+    EXPECT_EQ(transmittance.uniformBufferCount(), 4u);
+    EXPECT_EQ(transmittance.textureUnitCount(), 8u);
+    const auto before = test::readGlState(gl());
+    transmittance.bind(2, 3);
+    EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());
+    ASSERT_TRUE(transmittance.prepare(mLight, casters()));
+    transmittance.bind(2, 3);
+    EXPECT_THAT(test::differences(before, test::readGlState(gl())),
+                testing::Not(testing::IsEmpty()));
+    EXPECT_GT(transmittance.gpuBytes(), std::uint64_t{3} * 32 * 32 * 16);
+    EXPECT_LE(transmittance.gpuBytes(), device().allocatedBytes());
+}
+
+} // namespace
+} // namespace lamina
