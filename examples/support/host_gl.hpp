@@ -23,8 +23,10 @@
     X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                                       \
     X(PFNGLCREATERENDERBUFFERSPROC, CreateRenderbuffers)                                           \
     X(PFNGLCREATESHADERPROC, CreateShader)                                                         \
+    X(PFNGLCREATETEXTURESPROC, CreateTextures)                                                     \
     X(PFNGLCREATEVERTEXARRAYSPROC, CreateVertexArrays)                                             \
     X(PFNGLDELETESHADERPROC, DeleteShader)                                                         \
+    X(PFNGLDISABLEPROC, Disable)                                                                   \
     X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)                                                   \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                         \
     X(PFNGLENABLEPROC, Enable)                                                                     \
@@ -34,16 +36,21 @@
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                                         \
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                                                 \
     X(PFNGLGETSHADERIVPROC, GetShaderiv)                                                           \
+    X(PFNGLGETTEXTUREIMAGEPROC, GetTextureImage)                                                   \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                           \
     X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                                                       \
     X(PFNGLNAMEDBUFFERDATAPROC, NamedBufferData)                                                   \
+    X(PFNGLNAMEDFRAMEBUFFERDRAWBUFFERSPROC, NamedFramebufferDrawBuffers)                           \
     X(PFNGLNAMEDFRAMEBUFFERRENDERBUFFERPROC, NamedFramebufferRenderbuffer)                         \
+    X(PFNGLNAMEDFRAMEBUFFERTEXTUREPROC, NamedFramebufferTexture)                                   \
     X(PFNGLNAMEDRENDERBUFFERSTORAGEMULTISAMPLEPROC, NamedRenderbufferStorageMultisample)           \
     X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i)                                                 \
     X(PFNGLPROGRAMUNIFORM3FVPROC, ProgramUniform3fv)                                               \
+    X(PFNGLPROGRAMUNIFORM4FVPROC, ProgramUniform4fv)                                               \
     X(PFNGLPROGRAMUNIFORMMATRIX4FVPROC, ProgramUniformMatrix4fv)                                   \
     X(PFNGLREADPIXELSPROC, ReadPixels)                                                             \
     X(PFNGLSHADERSOURCEPROC, ShaderSource)                                                         \
+    X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)                                                 \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                                             \
     X(PFNGLVERTEXARRAYATTRIBBINDINGPROC, VertexArrayAttribBinding)                                 \
     X(PFNGLVERTEXARRAYATTRIBFORMATPROC, VertexArrayAttribFormat)                                   \

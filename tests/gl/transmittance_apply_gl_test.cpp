@@ -172,7 +172,7 @@ TEST_F(TransmittanceApplyGlTest, AgreesWithTheEnginesForwardShader) {
                              Case{TransmittanceModel::LeafCount, true, LightKind::Directional},
                              Case{TransmittanceModel::Absorption, false, LightKind::Directional},
                              Case{TransmittanceModel::LeafCount, true, LightKind::Spot},
-                             Case{TransmittanceModel::LeafCount, false, LightKind::Point},
+                             Case{TransmittanceModel::LeafCount, true, LightKind::Point},
                              Case{TransmittanceModel::Absorption, false, LightKind::Point}}) {
         SCOPED_TRACE(std::to_string(static_cast<int>(test.model)) + " light " +
                      std::to_string(static_cast<int>(test.kind)) + (test.local ? " local" : ""));
