@@ -160,7 +160,7 @@ GBuffer makeGBuffer(const HostGl& gl, std::uint32_t size) {
     made.view.size = {size, size};
     made.view.worldToClip =
         glm::perspective(glm::radians(38.0), 1.0, 0.5, 120.0) *
-        glm::lookAt(glm::dvec3(-3.4, 5.4, 12.0), glm::dvec3(0.9, 2.3, 0.9), glm::dvec3(0, 1, 0));
+        glm::lookAt(glm::dvec3(-3.6, 5.8, 13.4), glm::dvec3(1.0, 2.4, 0.9), glm::dvec3(0, 1, 0));
     const auto pixels = static_cast<GLsizei>(size);
     gl.CreateFramebuffers(1, &made.framebuffer);
     gl.CreateTextures(GL_TEXTURE_2D, 1, &made.depth);
