@@ -249,7 +249,7 @@ void run(const char* file) {
     const HostGl gl(load);
     lamina::Device device = check(lamina::Device::fromCurrentContext(load));
 
-    const example::Tree tree = example::makeTree();
+    const example::Tree tree = example::makeTree(5);
     const EngineMesh ground = upload(gl, makeGround());
     const EngineMesh wood = upload(gl, tree.wood);
     const EngineMesh leaves = upload(gl, tree.leaves);

@@ -131,8 +131,8 @@ struct Scene {
     lamina::Box3 bounds;
 
     Scene(const HostGl& gl, int leavesPerTwig) {
-        example::Tree tree =
-            example::makeTree({.leavesPerTwig = leavesPerTwig, .leafLength = 0.13f});
+        example::Tree tree = example::makeTree(
+            example::TreeDesc{.leavesPerTwig = leavesPerTwig, .leafLength = 0.13f});
         bounds = tree.leaves.bounds();
         bounds.extend(tree.wood.bounds().min);
         bounds.extend(tree.wood.bounds().max);
@@ -382,11 +382,11 @@ void drawAbsorption(const Options& options, Shader& shader) {
     }
     for (std::uint32_t i = 0; i < kClasses; ++i)
         shader.materials()[i].absorption = 0.12f;
-    shader.materials()[kWood].absorption = 8.0f;
+    shader.materials()[kWood].absorption = 3.0f;
     lamina::TransmittanceDesc desc = describe(options);
     desc.model = lamina::TransmittanceModel::Absorption;
     desc.localRanges = false;
-    desc.size = {options.columns / 2, options.columns / 2, std::min(options.slices, 128u)};
+    desc.size.z = std::min(options.slices, 64u);
     lamina::Transmittance perVoxel = shader.make(desc);
     shader.prepare(perVoxel, casters);
     strip.add(shader.lit(shader.apply(perVoxel, {})));

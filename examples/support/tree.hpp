@@ -18,11 +18,15 @@ struct TreeDesc {
     float leafLength = 0.2f; ///< Of the longest, world units.
 };
 
-[[nodiscard]] Tree makeTree(const TreeDesc& desc = {});
+[[nodiscard]] Tree makeTree(const TreeDesc& desc);
+
+[[nodiscard]] inline Tree makeTree(std::uint32_t seed) {
+    return makeTree(TreeDesc{.seed = seed});
+}
 
 /// A tree in full leaf: 163,200 leaf triangles, as many as the chestnut of [ED06] has.
 [[nodiscard]] inline Tree makeChestnut() {
-    return makeTree({.leavesPerTwig = 170, .leafLength = 0.13f});
+    return makeTree(TreeDesc{.leavesPerTwig = 170, .leafLength = 0.13f});
 }
 
 } // namespace example

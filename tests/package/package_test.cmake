@@ -96,6 +96,9 @@ run("building the consumer" ${CMAKE_COMMAND} --build ${WORK}/consumer --parallel
 run("the host program" ${WORK}/consumer/host_program)
 expect_in_output("the host program" "32 voxels")
 run("the component program" ${WORK}/consumer/component_program)
+if("transmittance" IN_LIST components)
+    run("the transmittance program" ${WORK}/consumer/transmittance_program)
+endif()
 
 # The examples are a project of their own too.
 if(EXAMPLES)

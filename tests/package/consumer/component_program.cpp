@@ -8,6 +8,9 @@
 #ifdef HAS_GRID_IO
 #include <lamina/grid_io/grid_file.hpp>
 #endif
+#ifdef HAS_TRANSMITTANCE
+#include <lamina/transmittance/transmittance.hpp>
+#endif
 
 #include <cstdio>
 
@@ -53,9 +56,22 @@ bool gridIsWritten() {
     return true;
 }
 
+bool transmittanceIsMade() {
+#ifdef HAS_TRANSMITTANCE
+    const auto context = lamina::headless::Context::create();
+    if (!expect(context.hasValue(), "a headless context"))
+        return false;
+    const auto device = lamina::Device::fromCurrentContext(
+        [&](const char* name) { return context->getProcAddress(name); });
+    return expect(device && lamina::Transmittance::create(*device), "transmittance shadows");
+#else
+    return true;
+#endif
+}
+
 } // namespace
 
 int main() {
     static_assert(LAMINA_VERSION_MAJOR >= 0);
-    return contextIsMade() && meshIsRead() && gridIsWritten() ? 0 : 1;
+    return contextIsMade() && meshIsRead() && gridIsWritten() && transmittanceIsMade() ? 0 : 1;
 }

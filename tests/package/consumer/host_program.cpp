@@ -1,5 +1,7 @@
 // A host engine in one file: its own EGL context, function pointers, vertex buffer and compute
 // shader. It hands them to Lamina and checks each voxel and the answers of the GLSL queries.
+#include "installed_shader.hpp"
+
 #include <lamina/gl/device.hpp>
 #include <lamina/grid/voxel_grid.hpp>
 #include <lamina/voxelize/voxelizer.hpp>
@@ -13,8 +15,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
 #include <string>
 
 namespace {
@@ -133,26 +133,8 @@ void checkVoxels(const lamina::BitGrid& grid) {
     expect(count == 8 * 4 && grid.count() == count, "32 voxels, found " + std::to_string(count));
 }
 
-/// The engine's own `#include <...>`.
-std::string flattened(const std::string& source) {
-    constexpr std::string_view kInclude = "#include <";
-    std::istringstream lines(source);
-    std::string text;
-    for (std::string line; std::getline(lines, line);) {
-        if (!line.starts_with(kInclude)) {
-            text += line + '\n';
-            continue;
-        }
-        const std::string name = line.substr(kInclude.size(), line.rfind('>') - kInclude.size());
-        std::ifstream file(std::string(HOST_SHADER_DIR) + '/' + name);
-        expect(file.good(), "an installed shader " + name);
-        text += flattened({std::istreambuf_iterator<char>(file), {}});
-    }
-    return text;
-}
-
 GLuint queryProgram(const Gl& gl) {
-    const std::string source = flattened(R"(#version 450
+    const std::string source = installedShader(HOST_SHADER_DIR, R"(#version 450
 #define LAMINA_GRID_BLOCK_BINDING 3
 #define LAMINA_GRID_TEXTURE_UNIT 5
 #include <lamina/grid.glsl>
