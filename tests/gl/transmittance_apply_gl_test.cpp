@@ -243,15 +243,28 @@ TEST_F(TransmittanceApplyGlTest, HostShadowMapsOfAllKinds) {
     gl().NamedFramebufferDrawBuffer(framebuffer.id(), GL_NONE);
     const MeshView opaque = mOpaqueBuffers->view();
 
-    for (const DepthMapKind kind :
-         {DepthMapKind::Texture2D, DepthMapKind::TextureArray, DepthMapKind::TextureCube}) {
-        SCOPED_TRACE(static_cast<int>(kind));
+    // The ball fills most of one face of the cube after the other.
+    const glm::dvec3 ball(0.5, 2.2, 0.3);
+    struct Case {
+        DepthMapKind kind;
+        glm::dvec3 position{0.0};
+    };
+    for (const auto& [kind, position] :
+         {Case{DepthMapKind::Texture2D}, Case{DepthMapKind::TextureArray},
+          Case{DepthMapKind::TextureCube, ball + glm::dvec3(1.5, 0.3, 0.4)},
+          Case{DepthMapKind::TextureCube, ball - glm::dvec3(1.5, -0.3, 0.4)},
+          Case{DepthMapKind::TextureCube, ball + glm::dvec3(0.4, 1.5, 0.3)},
+          Case{DepthMapKind::TextureCube, ball - glm::dvec3(0.4, 1.5, -0.3)},
+          Case{DepthMapKind::TextureCube, ball + glm::dvec3(0.4, -0.3, 1.5)},
+          Case{DepthMapKind::TextureCube, ball - glm::dvec3(-0.4, -0.3, 1.5)}}) {
+        SCOPED_TRACE(std::to_string(static_cast<int>(kind)) + " x " + std::to_string(position.x) +
+                     " y " + std::to_string(position.y));
         LightDepthMap map;
         map.kind = kind;
         GLuint id = 0;
         if (kind == DepthMapKind::TextureCube) {
             mLight.kind = LightKind::Point;
-            mLight.position = {-1.1, 2.0, -0.8};
+            mLight.position = position;
             map.faceProjection = glm::perspective(glm::radians(90.0), 1.0, 0.05, 20.0);
             gl().CreateTextures(GL_TEXTURE_CUBE_MAP, 1, &id);
             gl().TextureStorage2D(id, 1, GL_DEPTH_COMPONENT24, kMap.x, kMap.y);

@@ -78,6 +78,12 @@ TEST_F(TransmittanceQuadsGlTest, StackOfQuadsIsCountedExactly) {
                     EXPECT_NEAR(found[i].x, std::pow(1.0 - kSigma, i / 3), kRounding) << i;
             }
         }
+    // The last leaf of a local range does not count before itself.
+    Transmittance local = make(descOf(128, true));
+    ASSERT_TRUE(local.prepare(sun(), casters()));
+    ASSERT_TRUE(local.setSettings(plain(kSigma)));
+    const test::ProbePoint last[] = {{{0.03, 0.4, -15.0}}};
+    EXPECT_NEAR(probe(local, last).front().x, std::pow(1.0 - kSigma, 14), kRounding);
     // 32 slices: every second one holds a quad.
     Transmittance transmittance = make(descOf(32, false));
     TransmittanceCasters tight = casters();
@@ -218,6 +224,51 @@ TEST_F(TransmittanceQuadsGlTest, OpaqueCastersDecideFirst) {
     all.opaque = {};
     ASSERT_TRUE(transmittance.prepare(sun(), all));
     EXPECT_EQ(probe(transmittance, points)[2], glm::vec3(1.0f));
+}
+
+TEST_F(TransmittanceQuadsGlTest, LeavesFromTheHostsVertexStage) {
+    DrawSource source;
+    source.vertexShader = R"(
+LaminaVertex laminaVertex() {
+    vec2 corner = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0;
+    return LaminaVertex(vec3(2.0 * corner, -1.0 - float(gl_InstanceID)), vec3(0.0, 0.0, 1.0),
+                        uint(gl_InstanceID & 1));
+}
+)";
+    GLuint vertexArray = 0;
+    gl().CreateVertexArrays(1, &vertexArray);
+    source.draw = [&](const DrawContext&) {
+        gl().BindVertexArray(vertexArray);
+        gl().DrawArraysInstanced(GL_TRIANGLES, 0, 3, 5);
+    };
+    std::vector<Material> materials(2);
+    materials[1].colorClass = 1;
+    materials[0].absorption = materials[1].absorption = 0.5f;
+    const GeometrySource sources[] = {source};
+    TransmittanceCasters all = casters();
+    all.leaves = sources;
+    all.materials = materials;
+    const test::ProbePoint behind[] = {{{-0.5, -0.5, -18.0}}, {{-0.5, -0.5, -2.5}}};
+    TransmittanceDesc desc = descOf(128, true);
+    desc.classes = 2;
+    Transmittance counting = make(desc);
+    ASSERT_TRUE(counting.prepare(sun(), all));
+    TransmittanceSettings settings = plain(0.0f);
+    settings.attenuation[0] = glm::vec3(0.5f);
+    settings.attenuation[1] = glm::vec3(0.1f);
+    ASSERT_TRUE(counting.setSettings(settings));
+    auto found = probe(counting, behind);
+    EXPECT_NEAR(found[0].x, 0.125 * 0.81, kRounding);
+    EXPECT_NEAR(found[1].x, 0.5 * 0.9, kRounding);
+    desc = descOf(128, false);
+    desc.model = TransmittanceModel::Absorption;
+    Transmittance absorbing = make(desc);
+    ASSERT_TRUE(absorbing.prepare(sun(), all));
+    ASSERT_TRUE(absorbing.setSettings(plain(0.0f)));
+    found = probe(absorbing, behind);
+    EXPECT_NEAR(found[0].x, std::exp(-2.5), kRounding);
+    EXPECT_NEAR(found[1].x, std::exp(-1.0), kRounding);
+    gl().DeleteVertexArrays(1, &vertexArray);
 }
 
 TEST_F(TransmittanceQuadsGlTest, MovingPointsSeeNoSteps) {
@@ -369,8 +420,10 @@ TEST_F(TransmittanceShellsGlTest, PointLightSeesAllAround) {
                     const auto found = probe(transmittance, points);
                     for (std::size_t i = 0; i < points.size(); ++i)
                         EXPECT_NEAR(found[i].x, expected, kRounding)
-                            << n << (withOpaque ? " opaque " : " ") << (local ? "local " : "uniform ")
-                            << points[i].normal.x << ' ' << points[i].normal.y << ' ' << points[i].normal.z<<" "<<settings.filterWidth;
+                            << n << (withOpaque ? " opaque " : " ")
+                            << (local ? "local " : "uniform ") << points[i].normal.x << ' '
+                            << points[i].normal.y << ' ' << points[i].normal.z << " "
+                            << settings.filterWidth;
                 }
             }
         }
