@@ -83,8 +83,8 @@ LeafReference::Crossings LeafReference::towards(const glm::vec3& point,
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(mImpl->scene, &collector.context, &query);
     std::ranges::sort(collector.hits);
-    const auto repeated = std::ranges::unique(collector.hits);
-    collector.hits.erase(repeated.begin(), repeated.end());
+    collector.hits.erase(std::unique(collector.hits.begin(), collector.hits.end()),
+                         collector.hits.end());
     Crossings crossings;
     for (const Hit& hit : collector.hits) {
         if (hit.geometry < mImpl->classes)

@@ -115,8 +115,9 @@ std::vector<double> LeafRays::crossings(const glm::dvec3& from, const glm::dvec3
     rtcIntersect1(mImpl->scene, &collector.context, &query);
     // A filter may see a hit more than once.
     std::ranges::sort(collector.hits, {}, &Hit::triangle);
-    const auto repeated = std::ranges::unique(collector.hits, {}, &Hit::triangle);
-    collector.hits.erase(repeated.begin(), repeated.end());
+    const auto isSame = [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; };
+    collector.hits.erase(std::unique(collector.hits.begin(), collector.hits.end(), isSame),
+                         collector.hits.end());
     std::vector<double> found;
     for (const Hit& hit : collector.hits)
         found.push_back(hit.t);
@@ -150,8 +151,7 @@ const IdealSlicemap::Column& IdealSlicemap::column(const glm::uvec2& place) {
                 made.range ? std::clamp<double>(depth, made.range->near, made.range->far) : depth,
                 made))
             made.slices.push_back(*slice);
-    const auto repeated = std::ranges::unique(made.slices);
-    made.slices.erase(repeated.begin(), repeated.end());
+    made.slices.erase(std::unique(made.slices.begin(), made.slices.end()), made.slices.end());
     return made;
 }
 
