@@ -1,6 +1,7 @@
 #include <lamina/transmittance/transmittance.hpp>
 
 #include "gl/binding_guards.hpp"
+#include "gl/fetch_sampler.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/screen_pass.hpp"
 #include "gl/view_constants.hpp"
@@ -80,6 +81,7 @@ struct Transmittance::Impl {
     std::variant<std::monostate, LeafMaps, AbsorptionSums> maps;
     OpaqueMap opaqueMap;
     gl::ScreenPass screenPass;
+    gl::FetchSampler sampler; ///< For the host's depths and normals.
     gl::Buffer constants;
     gl::Buffer viewConstants;
     gl::Texture target;
@@ -93,7 +95,8 @@ struct Transmittance::Impl {
         : device(host.state())
         , desc(wanted)
         , opaqueMap(device, desc.opaqueMapTexels)
-        , screenPass(device, "lamina transmittance") {}
+        , screenPass(device, "lamina transmittance")
+        , sampler(device) {}
 
     [[nodiscard]] Result<void> createMaps(const Device& host);
     [[nodiscard]] Result<void> buildLeafMaps(const TransmittanceCasters& casters,
@@ -412,8 +415,8 @@ Result<void> Transmittance::apply(const TransmittanceReceiver& receiver, std::ui
     gl.BindBuffersBase(GL_UNIFORM_BUFFER, LAMINA_TRANSMITTANCE_APPLY_VIEW_BINDING, 1, &viewBlock);
     gl.BindTextureUnit(LAMINA_TRANSMITTANCE_APPLY_DEPTH_UNIT, receiver.depthTexture);
     gl.BindTextureUnit(LAMINA_TRANSMITTANCE_APPLY_NORMAL_UNIT, receiver.normalTexture);
-    gl.BindSampler(LAMINA_TRANSMITTANCE_APPLY_DEPTH_UNIT, 0);
-    gl.BindSampler(LAMINA_TRANSMITTANCE_APPLY_NORMAL_UNIT, 0);
+    gl.BindSampler(LAMINA_TRANSMITTANCE_APPLY_DEPTH_UNIT, mImpl->sampler.id());
+    gl.BindSampler(LAMINA_TRANSMITTANCE_APPLY_NORMAL_UNIT, mImpl->sampler.id());
     mImpl->bind(kApplyBlocks, LAMINA_TRANSMITTANCE_APPLY_TEXTURE_UNIT);
     mImpl->screenPass.draw(*program, {&target, 1}, receiver.view.size);
     uniforms.restore(gl);

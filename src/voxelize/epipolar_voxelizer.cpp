@@ -1,4 +1,5 @@
 #include "gl/binding_guards.hpp"
+#include "gl/fetch_sampler.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 #include "voxelize/epipolar_depth_maps.hpp"
@@ -17,25 +18,6 @@ namespace {
 
 /// Depth maps held at a time; more lights are served in batches.
 constexpr std::uint64_t kMaxDepthBytes = std::uint64_t{256} << 20;
-
-class Sampler {
-public:
-    explicit Sampler(const std::shared_ptr<gl::DeviceState>& device)
-        : mDevice(device) {
-        const GladGLContext& gl = device->gl;
-        gl.CreateSamplers(1, &mId);
-        gl.SamplerParameteri(mId, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-        gl.SamplerParameteri(mId, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    }
-    ~Sampler() { mDevice->gl.DeleteSamplers(1, &mId); }
-    Sampler(const Sampler&) = delete;
-    Sampler& operator=(const Sampler&) = delete;
-    [[nodiscard]] GLuint id() const { return mId; }
-
-private:
-    std::shared_ptr<gl::DeviceState> mDevice;
-    GLuint mId = 0;
-};
 
 /// Where a batch's depths come from.
 struct DepthSource {
@@ -98,7 +80,7 @@ struct EpipolarVoxelizer::Impl {
     std::shared_ptr<gl::DeviceState> device;
     EpipolarVoxelizerDesc desc;
     DepthMapRenderer depthMaps;
-    Sampler sampler;
+    gl::FetchSampler sampler;
     gl::Buffer maps;
 };
 

@@ -196,6 +196,8 @@ TEST_F(TransmittanceApplyGlTest, AgreesWithTheEnginesForwardShader) {
         const Drawn drawn = drawScene(transmittance);
         const auto forward = read(drawn.forward.id());
 
+        gl().TextureParameteri(drawn.depth.id(), GL_TEXTURE_COMPARE_MODE,
+                               GL_COMPARE_REF_TO_TEXTURE);
         TransmittanceReceiver receiver{mView, drawn.depth.id(), drawn.normals.id()};
         const auto applied = transmittance.apply(receiver);
         ASSERT_TRUE(applied) << applied.error().text;

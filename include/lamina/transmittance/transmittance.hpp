@@ -133,7 +133,7 @@ enum class NormalEncoding : std::uint8_t {
 struct TransmittanceReceiver {
     View view;
     /// GL name of the depth buffer, a 2D texture of view.size: a depth format, or a float one that
-    /// holds window depths in red.
+    /// holds window depths in red. Its filter, wrap and compare modes do not matter.
     std::uint32_t depthTexture = 0;
     /// GL name of a 2D texture of view.size with world-space normals of any length; 0: they are
     /// found from the depths of neighbouring pixels.
