@@ -60,8 +60,8 @@ struct DrawContext {
 struct DrawSource {
     /// GLSL 4.50 that defines `LaminaVertex laminaVertex()` (lamina/vertex_interface.glsl) and
     /// declares what it needs: inputs, uniforms, buffers. It must not declare main(), nor use
-    /// uniform buffer bindings 0 to 2 and image unit 0, nor names that begin with `lamina` or
-    /// `Lamina` otherwise.
+    /// uniform buffer bindings 0 to 2 and image units 0 and 1, nor names that begin with `lamina`
+    /// or `Lamina` otherwise.
     std::string vertexShader;
     /// Binds the host's vertex array and resources and issues draws of GL_TRIANGLES,
     /// GL_TRIANGLE_STRIP or GL_TRIANGLE_FAN. It runs with Lamina's program and framebuffer bound
