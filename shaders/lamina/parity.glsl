@@ -11,7 +11,7 @@
 // sprite's depth range; layers are crossings of a column's centre line with the surface, nearest first.
 //
 // A point is answered by the column it lies in: what is nearer to the surface than a column's width may
-// be wrong; laminaParityClassify() tells, laminaParityInsidePair() asks a second direction.
+// be wrong; laminaParityClassify() tells, laminaParityInsideRefined() asks other directions.
 // Precision: single.
 #ifndef LAMINA_PARITY_GLSL
 #define LAMINA_PARITY_GLSL
@@ -124,16 +124,19 @@ uint laminaParityMask(vec3 world) {
     return mask;
 }
 
-// One answer of a mask. LAMINA_PARITY_UNION: inside any sprite; INTERSECTION: inside all; DIFFERENCE:
+// One answer of the mask of `count` shapes. LAMINA_PARITY_UNION: inside any sprite; INTERSECTION: inside all; DIFFERENCE:
 // inside the first and no other.
-bool laminaParityCombine(uint mask, int rule) {
-    int count = laminaParityCount();
+bool laminaParityCombineShapes(uint mask, int count, int rule) {
     uint every = count == 32 ? 0xffffffffu : (1u << uint(count)) - 1u;
     if (rule == LAMINA_PARITY_INTERSECTION)
         return count > 0 && (mask & every) == every;
     if (rule == LAMINA_PARITY_DIFFERENCE)
         return (mask & every) == 1u;
     return (mask & every) != 0u;
+}
+
+bool laminaParityCombine(uint mask, int rule) {
+    return laminaParityCombineShapes(mask, laminaParityCount(), rule);
 }
 
 // Is a point on the surface of a sprite also on the surface of the combination? `mask`: of that point,
@@ -164,33 +167,44 @@ float laminaParityShare(int sprite, vec3 place) {
     return laminaParityInverted(sprite) ? 1.0 - share : share;
 }
 
-// Inside by two sprites of one shape whose axes differ: the second decides where the columns around the
-// point disagree in the first, as they do near surfaces nearly parallel to its axis ([TD08] 5.2: fuzzy
-// edges). Where both disagree, the mean of their shares decides.
-bool laminaParityInsidePair(int first, int second, vec3 world) {
+// Inside by `directions` sprites of one shape, sprite `first` and those after it, whose axes differ. The
+// first whose columns around the point agree decides; near surfaces nearly parallel to its axis they
+// disagree ([TD08] 5.2: fuzzy edges). Where all disagree, the mean of their shares decides. With one
+// direction that is interpolation, which smooth surfaces gain from.
+bool laminaParityInsideRefined(int first, int directions, vec3 world) {
     const float kRounding = 1.0e-5;
-    float share = laminaParityShare(first, laminaParityPlace(first, world));
-    if (share > kRounding && share < 1.0 - kRounding) {
-        float other = laminaParityShare(second, laminaParityPlace(second, world));
-        bool isSure = other <= kRounding || other >= 1.0 - kRounding;
-        share = isSure ? other : 0.5 * (share + other);
+    float sum = 0.0;
+    for (int i = 0; i < directions; ++i) {
+        float share = laminaParityShare(first + i, laminaParityPlace(first + i, world));
+        if (share <= kRounding || share >= 1.0 - kRounding)
+            return share >= 0.5;
+        sum += share;
     }
-    return share >= 0.5;
+    return sum >= 0.5 * float(directions);
 }
 
-// LAMINA_PARITY_BORDER if a column of the four around the point has a crossing within a column's
-// diagonal of the point's depth, or if they disagree; else LAMINA_PARITY_INSIDE or _OUTSIDE, of which
-// only surfaces thinner than a column can make a false one.
+// Bit s: inside shape s, whose sprites are `directions` consecutive ones of the set.
+uint laminaParityMaskRefined(int directions, vec3 world) {
+    uint mask = 0u;
+    for (int shape = 0; shape < laminaParityCount() / directions; ++shape)
+        mask |= laminaParityInsideRefined(shape * directions, directions, world) ? 1u << uint(shape) : 0u;
+    return mask;
+}
+
+// LAMINA_PARITY_BORDER if the column of the point and the eight around it disagree, or if one of them
+// has a crossing within a column's diagonal of the point's depth; else LAMINA_PARITY_INSIDE or _OUTSIDE.
+// A surface within half a column of the point is found, unless the shape or a gap in it is thinner
+// than a column.
 int laminaParityClassify(int sprite, vec3 world) {
     if (sprite >= laminaParityCount())
         return LAMINA_PARITY_OUTSIDE;
     vec3 place = laminaParityPlace(sprite, world);
     float reach = laminaParitySprite[sprite].scale.y;
     ivec2 columns = ivec2(laminaParitySprite[sprite].size.xy);
-    ivec2 low = ivec2(floor(place.xy - 0.5));
+    ivec2 center = ivec2(floor(place.xy));
     int insideCount = 0;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 column = low + ivec2(i & 1, i >> 1);
+    for (int i = 0; i < 9; ++i) {
+        ivec2 column = center + ivec2(i % 3, i / 3) - 1;
         if (any(lessThan(column, ivec2(0))) || any(greaterThanEqual(column, columns)) || place.z < -reach ||
             place.z > 1.0 + reach)
             continue;
@@ -199,9 +213,9 @@ int laminaParityClassify(int sprite, vec3 world) {
             return LAMINA_PARITY_BORDER;
         insideCount += place.z <= 1.0 ? before & 1 : 0;
     }
-    if (insideCount != 0 && insideCount != 4)
+    if (insideCount != 0 && insideCount != 9)
         return LAMINA_PARITY_BORDER;
-    return (insideCount == 4) != laminaParityInverted(sprite) ? LAMINA_PARITY_INSIDE : LAMINA_PARITY_OUTSIDE;
+    return (insideCount == 9) != laminaParityInverted(sprite) ? LAMINA_PARITY_INSIDE : LAMINA_PARITY_OUTSIDE;
 }
 
 // The same for a combination: border where the sprites at whose border the point lies decide.

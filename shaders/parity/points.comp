@@ -6,6 +6,7 @@
 //   2. test it against the sprites of the set;
 //   3. pack the answers. Those past the last point are 0.
 // permute LAMINA_PARITY_ANSWER = LAMINA_PARITY_ANSWER_BITS LAMINA_PARITY_ANSWER_BYTES LAMINA_PARITY_ANSWER_CLASSES LAMINA_PARITY_ANSWER_MASKS
+// permute LAMINA_PARITY_REFINED = 0 1
 // permute LAMINA_PARITY_COUNT = 1 4 32
 #include <lamina/shared/parity_block.glsl>
 
@@ -32,13 +33,22 @@ const uint kPointsPerWord = 1u;
 const uint kPointsPerWord = 4u;
 #endif
 
+uint maskAt(vec3 world) {
+#if LAMINA_PARITY_REFINED
+    return laminaParityMaskRefined(int(laminaPoints.rule.y), world);
+#else
+    return laminaParityMask(world);
+#endif
+}
+
 uint answer(vec3 world) {
 #if LAMINA_PARITY_ANSWER == LAMINA_PARITY_ANSWER_MASKS
-    return laminaParityMask(world);
+    return maskAt(world);
 #elif LAMINA_PARITY_ANSWER == LAMINA_PARITY_ANSWER_CLASSES
     return uint(laminaParityClassifyCombined(world, int(laminaPoints.rule.x)));
 #else
-    return uint(laminaParityCombine(laminaParityMask(world), int(laminaPoints.rule.x)));
+    int shapes = laminaParityCount() / int(laminaPoints.rule.y);
+    return uint(laminaParityCombineShapes(maskAt(world), shapes, int(laminaPoints.rule.x)));
 #endif
 }
 

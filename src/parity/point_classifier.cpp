@@ -61,6 +61,15 @@ Error invalid(const std::string& text) {
     return {ErrorCode::InvalidArgument, "point classification: expected " + text};
 }
 
+Result<void> checkDirections(const SpriteSet& sprites, const PointQuery& query) {
+    if (query.directions > 0 &&
+        (query.answer == PointAnswer::Classes || sprites.size() % query.directions != 0))
+        return invalid("directions that divide the set, and no classes with them, found " +
+                       std::to_string(query.directions) + " directions and " +
+                       std::to_string(sprites.size()) + " sprites");
+    return {};
+}
+
 /// A part of a buffer, bound from an aligned place on.
 struct BoundRange {
     GLintptr begin = 0;
@@ -82,7 +91,7 @@ struct PointClassifier::Impl {
     [[nodiscard]] Result<void> check(const PointBuffer& points, std::uint32_t answers,
                                      std::uint64_t offset, std::uint64_t bytes) const;
     [[nodiscard]] Result<std::uint64_t> batchSize(const PointBuffer& points) const;
-    [[nodiscard]] Result<GLuint> program(const SpriteSet& sprites, PointAnswer answer) const;
+    [[nodiscard]] Result<GLuint> program(const SpriteSet& sprites, const PointQuery& query) const;
     void dispatch(const PointBuffer& points, std::uint64_t first, std::uint64_t count,
                   const PointQuery& query, GLuint answers, std::uint64_t answerOffset);
 };
@@ -133,13 +142,16 @@ Result<std::uint64_t> PointClassifier::Impl::batchSize(const PointBuffer& points
     return reach / kBatchStep * kBatchStep;
 }
 
-Result<GLuint> PointClassifier::Impl::program(const SpriteSet& sprites, PointAnswer answer) const {
+Result<GLuint> PointClassifier::Impl::program(const SpriteSet& sprites,
+                                              const PointQuery& query) const {
     // Those that the build compiles.
     const char* count = sprites.size() <= 1 ? "1" : sprites.size() <= 4 ? "4" : "32";
-    return gl::findOrBuildProgram(
-        *device, {"lamina point classification",
-                  {{GL_COMPUTE_SHADER, "parity/points.comp"}},
-                  {{"LAMINA_PARITY_ANSWER", answerName(answer)}, {"LAMINA_PARITY_COUNT", count}}});
+    return gl::findOrBuildProgram(*device,
+                                  {"lamina point classification",
+                                   {{GL_COMPUTE_SHADER, "parity/points.comp"}},
+                                   {{"LAMINA_PARITY_ANSWER", answerName(query.answer)},
+                                    {"LAMINA_PARITY_REFINED", query.directions > 0 ? "1" : "0"},
+                                    {"LAMINA_PARITY_COUNT", count}}});
 }
 
 void PointClassifier::Impl::dispatch(const PointBuffer& points, std::uint64_t first,
@@ -155,7 +167,7 @@ void PointClassifier::Impl::dispatch(const PointBuffer& points, std::uint64_t fi
 
     const shared::LaminaPointConstants block{
         {input.firstWord, points.strideBytes / 4, count, output.firstWord},
-        {ruleNumber(query.rule), 0, 0, 0}};
+        {ruleNumber(query.rule), std::max(query.directions, 1u), 0, 0}};
     // New storage each time: the last dispatch may still read the old.
     gl.NamedBufferData(constants.id(), sizeof block, &block, GL_STREAM_DRAW);
     const GLuint uniforms = constants.id();
@@ -195,6 +207,8 @@ Result<void> PointClassifier::classify(const SpriteSet& sprites, const PointBuff
                                        std::uint64_t answerOffset) {
     if (points.count == 0)
         return {};
+    if (auto divides = checkDirections(sprites, query); !divides)
+        return divides;
     auto valid =
         mImpl->check(points, answers, answerOffset, answerBytes(query.answer, points.count));
     if (!valid)
@@ -202,7 +216,7 @@ Result<void> PointClassifier::classify(const SpriteSet& sprites, const PointBuff
     auto batch = mImpl->batchSize(points);
     if (!batch)
         return batch.error();
-    auto program = mImpl->program(sprites, query.answer);
+    auto program = mImpl->program(sprites, query);
     if (!program)
         return program.error();
     const gl::DebugGroup group(*mImpl->device, "lamina: classify points");

@@ -30,8 +30,7 @@ double distanceToTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::d
     const auto toSegment = [&](const glm::dvec3& from, const glm::dvec3& to) {
         const glm::dvec3 along = to - from;
         const double size = glm::dot(along, along);
-        const double t =
-            size > 0.0 ? std::clamp(glm::dot(p - from, along) / size, 0.0, 1.0) : 0.0;
+        const double t = size > 0.0 ? std::clamp(glm::dot(p - from, along) / size, 0.0, 1.0) : 0.0;
         return glm::distance(p, from + t * along);
     };
     const glm::dvec3 normal = glm::cross(b - a, c - a);

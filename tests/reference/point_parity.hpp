@@ -16,7 +16,8 @@ namespace lamina::reference {
 [[nodiscard]] std::vector<char> pointParity(const TriangleMesh& mesh,
                                             std::span<const glm::vec3> points, Axis axis);
 
-/// Is a triangle of the mesh nearer to the point than `distance` (world units)? Cost: all triangles.
+/// Is a triangle of the mesh nearer to the point than `distance` (world units)? Cost: all
+/// triangles.
 [[nodiscard]] bool surfaceWithin(const TriangleMesh& mesh, const glm::dvec3& point,
                                  double distance);
 

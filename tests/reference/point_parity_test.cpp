@@ -28,15 +28,18 @@ TEST(PointParity, AgreesWithTheWindingNumber) {
 TEST(PointParity, RaysThroughEdgesAndCornersCountOnce) {
     const TriangleMesh box = makeBox({0, 0, 0}, {2, 2, 2});
     // The diagonals of the faces meet the rays through these points.
-    const std::vector<glm::vec3> points = {{1, 1, 1}, {0.5f, 0.5f, 0.5f}, {1.5f, 0.5f, 1}, {3, 1, 1}};
+    const std::vector<glm::vec3> points = {
+        {1, 1, 1}, {0.5f, 0.5f, 0.5f}, {1.5f, 0.5f, 1}, {3, 1, 1}};
     for (const Axis axis : {Axis::X, Axis::Y, Axis::Z})
         EXPECT_EQ(pointParity(box, points, axis), (std::vector<char>{1, 1, 1, 0}));
 }
 
 TEST(SurfaceWithin, KnowsFacesEdgesAndCorners) {
     const TriangleMesh box = makeBox({0, 0, 0}, {2, 2, 2});
-    const std::pair<glm::dvec3, double> cases[] = {
-        {{1.2, 0.7, 3}, 1}, {{3, 1, 3}, std::sqrt(2)}, {{3, 3, 3}, std::sqrt(3)}, {{1, 1, 0.25}, 0.25}};
+    const std::pair<glm::dvec3, double> cases[] = {{{1.2, 0.7, 3}, 1},
+                                                   {{3, 1, 3}, std::sqrt(2)},
+                                                   {{3, 3, 3}, std::sqrt(3)},
+                                                   {{1, 1, 0.25}, 0.25}};
     for (const auto& [point, distance] : cases) {
         EXPECT_TRUE(surfaceWithin(box, point, distance + 1e-9));
         EXPECT_FALSE(surfaceWithin(box, point, distance - 1e-9));

@@ -32,6 +32,11 @@ enum class SpriteRule : std::uint8_t {
 struct PointQuery {
     PointAnswer answer = PointAnswer::Bytes;
     SpriteRule rule = SpriteRule::Union;
+    /// Sprites of one shape along different axes, that stand together in the set: s * directions
+    /// and those after it are shape s, and masks have a bit per shape. Above 0:
+    /// laminaParityInsideRefined(), which finds the inside near surfaces parallel to an axis.
+    /// 0: laminaParityInside(), a sprite a shape. Not for Classes.
+    std::uint32_t directions = 0;
 };
 
 /// Points in a GL buffer of the host: three floats each, world space.
@@ -60,7 +65,8 @@ public:
     /// past the last point are 0. Does not wait for the GPU.
     /// GL: points written by shaders need GL_SHADER_STORAGE_BARRIER_BIT before the call, and
     /// answers what their reader needs after it.
-    /// Errors: InvalidArgument (buffers too small, misaligned or no buffers), DeviceLimit (points
+    /// Errors: InvalidArgument (buffers too small, misaligned or no buffers;
+    /// directions that do not divide the set, or with Classes), DeviceLimit (points
     /// further apart than a storage binding reaches), ShaderError.
     [[nodiscard]] Result<void> classify(const SpriteSet& sprites, const PointBuffer& points,
                                         const PointQuery& query, std::uint32_t answers,

@@ -81,7 +81,7 @@ struct LaminaPointConstants {
     // First word of point 0 in its binding, words from one point to the next, points of the
     // dispatch, first word of the answers in their binding.
     uvec4 place;
-    // LAMINA_PARITY_UNION, ..; unused.
+    // LAMINA_PARITY_UNION, ..; sprites of a shape; unused.
     uvec4 rule;
 };
 

@@ -4,6 +4,7 @@
 #include <lamina/parity/sprite_builder.hpp>
 #include <lamina/parity/sprite_set.hpp>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -53,6 +54,32 @@ inline SpriteSet spriteSet(const Device& device, std::span<const DepthSprite* co
         instances.push_back({.sprite = sprite});
     EXPECT_TRUE(set.update(instances));
     return set;
+}
+
+/// The answers to points by sprites where they were built; an error fails the test.
+inline std::vector<std::uint8_t> classify(const Device& device,
+                                          std::span<const DepthSprite* const> sprites,
+                                          std::span<const glm::vec3> points,
+                                          const PointQuery& query = {}) {
+    const SpriteSet set = spriteSet(device, sprites);
+    auto answers = PointClassifier::create(device).value().download(set, points, query);
+    EXPECT_TRUE(answers) << answers.error().text;
+    return answers ? *answers : std::vector<std::uint8_t>(points.size());
+}
+
+/// Indices of the points that are answered wrongly.
+inline std::vector<std::size_t> wrongOnes(std::span<const std::uint8_t> answers,
+                                          std::span<const char> expected) {
+    std::vector<std::size_t> wrong;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        if ((answers[i] != 0) != (expected[i] != 0))
+            wrong.push_back(i);
+    return wrong;
+}
+
+/// Length of a column's diagonal in the world.
+inline double diagonalOf(const GridTransform& transform) {
+    return glm::distance(transform.gridToWorld({0, 0, 0}), transform.gridToWorld({1, 1, 0}));
 }
 
 } // namespace lamina::test
