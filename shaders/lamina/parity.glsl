@@ -119,7 +119,8 @@ bool laminaParityInside(int sprite, vec3 world) {
 // Bit s: inside sprite s.
 uint laminaParityMask(vec3 world) {
     uint mask = 0u;
-    for (int sprite = 0; sprite < laminaParityCount(); ++sprite)
+    // A constant bound lets compilers unroll the loop and choose the samplers.
+    for (int sprite = 0; sprite < LAMINA_PARITY_COUNT; ++sprite)
         mask |= laminaParityInside(sprite, world) ? 1u << uint(sprite) : 0u;
     return mask;
 }
