@@ -140,12 +140,12 @@ bool laminaParityCombine(uint mask, int rule) {
     return laminaParityCombineShapes(mask, laminaParityCount(), rule);
 }
 
-// Is a point on the surface of a sprite also on the surface of the combination? `mask`: of that point,
-// in which the sprite's own bit does not matter. Draws cut faces: the sprites' surfaces, where this
-// holds, inside the solid that is cut.
-bool laminaParityIsBoundary(uint mask, int sprite, int rule) {
-    uint bit = 1u << uint(sprite);
-    return laminaParityCombine(mask | bit, rule) != laminaParityCombine(mask & ~bit, rule);
+// Is a point on the surface of one of `count` shapes also on the surface of their combination? `mask`:
+// of that point, in which the shape's own bit does not matter. Draws cut faces: the shapes' surfaces,
+// where this holds, inside the solid that is cut.
+bool laminaParityIsBoundary(uint mask, int count, int shape, int rule) {
+    uint bit = 1u << uint(shape);
+    return laminaParityCombineShapes(mask | bit, count, rule) != laminaParityCombineShapes(mask & ~bit, count, rule);
 }
 
 // Share, in [0,1], of the four columns around a place that lie inside at its depth, each by its

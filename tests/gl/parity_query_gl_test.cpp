@@ -384,9 +384,9 @@ TEST_F(ParityQueryGlTest, CombinedBordersAreWhereTheyDecide) {
     const auto boundary = ask(set, points, R"(
 vec4 ask(vec3 world) {
     uint mask = laminaParityMask(world);
-    return vec4(laminaParityIsBoundary(mask, 1, LAMINA_PARITY_UNION),
-                laminaParityIsBoundary(mask, 1, LAMINA_PARITY_INTERSECTION),
-                laminaParityIsBoundary(mask, 1, LAMINA_PARITY_DIFFERENCE), 0.0);
+    return vec4(laminaParityIsBoundary(mask, 2, 1, LAMINA_PARITY_UNION),
+                laminaParityIsBoundary(mask, 2, 1, LAMINA_PARITY_INTERSECTION),
+                laminaParityIsBoundary(mask, 2, 1, LAMINA_PARITY_DIFFERENCE), 0.0);
 })");
     EXPECT_EQ(boundary[1], glm::vec4(0, 1, 1, 0)) << "on the second box's face, inside the first";
     EXPECT_EQ(boundary[3], glm::vec4(1, 0, 0, 0)) << "on its other face, outside the first";
