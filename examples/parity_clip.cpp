@@ -6,9 +6,9 @@
 //   parity_clip OUT.png [--rule union|intersection|difference] [--keep] [--columns N] ...
 
 #include "support/check.hpp"
+#include "support/clip_shapes.hpp"
 #include "support/engine_mesh.hpp"
 #include "support/host_gl.hpp"
-#include "support/shapes.hpp"
 #include "support/target.hpp"
 #include "support/tower.hpp"
 
@@ -19,11 +19,10 @@
 
 #include <CLI/CLI.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-#include <cmath>
+#include <array>
 #include <map>
 
 namespace {
@@ -77,13 +76,13 @@ vec3 lit(vec3 albedo, vec3 normal, float gloss) {
     vec3 light = normalize(vec3(0.45, 0.8, 0.75));
     vec3 fill = normalize(vec3(-0.9, 0.15, 0.5));
     float high = pow(max(dot(normal, normalize(light + view)), 0.0), 48.0);
-    vec3 sum = albedo * (0.20 + 0.10 * normal.y + 0.75 * max(dot(normal, light), 0.0) +
-                         0.22 * max(dot(normal, fill), 0.0)) + gloss * high;
+    vec3 sum = albedo * (0.12 + 0.08 * normal.y + 0.72 * max(dot(normal, light), 0.0) +
+                         0.14 * max(dot(normal, fill), 0.0)) + gloss * high;
     return pow(sum, vec3(1.0 / 2.2));
 }
 
 vec3 background(vec3 direction) {
-    return mix(vec3(0.97, 0.97, 0.95), vec3(0.62, 0.72, 0.82), smoothstep(-0.3, 0.5, direction.y));
+    return mix(vec3(0.80, 0.82, 0.82), vec3(0.40, 0.52, 0.66), smoothstep(-0.3, 0.5, direction.y));
 }
 
 void main() {
@@ -110,33 +109,6 @@ void main() {
 }
 )";
 
-/// A knotted tube.
-lamina::TriangleMesh makeKnot(const glm::vec3& center, float size) {
-    constexpr unsigned kSteps = 400;
-    std::vector<glm::vec3> path;
-    for (unsigned i = 0; i < kSteps; ++i) {
-        const float t = glm::two_pi<float>() * static_cast<float>(i) / kSteps;
-        const float ring = 1.0f + 0.45f * std::cos(3.0f * t);
-        path.push_back(center + size * glm::vec3(ring * std::cos(2.0f * t),
-                                                 ring * std::sin(2.0f * t),
-                                                 0.6f * std::sin(3.0f * t)));
-    }
-    lamina::TriangleMesh mesh;
-    example::addClosedTube(mesh, path, 0.3f * size, 40);
-    return mesh;
-}
-
-/// A ball with waves all over it.
-lamina::TriangleMesh makeWavyBall(const glm::vec3& center, float size) {
-    lamina::TriangleMesh mesh;
-    example::addRevolved(mesh, example::ballProfile(1.0f, 160), 320, [&](const glm::vec3& p) {
-        const float wave =
-            0.10f * std::sin(9.0f * p.x) * std::sin(9.0f * p.y) * std::sin(9.0f * p.z);
-        return center + size * (1.0f + wave + 0.12f * example::noise(2.0f * p)) * p;
-    });
-    return mesh;
-}
-
 constexpr float kFar = 60.0f;
 
 lamina::TriangleMesh makeSky(const glm::vec3& eye) {
@@ -157,8 +129,8 @@ GLuint makeEngineProgram(const HostGl& gl, const Settings& settings, const glm::
     const GLuint program = example::makeProgram(
         gl, {{GL_VERTEX_SHADER, kVertexShader}, {GL_FRAGMENT_SHADER, fragment}});
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    const glm::mat4 camera = glm::perspective(glm::radians(36.0f), aspect, 0.5f, 150.0f) *
-                             glm::lookAt(eye, glm::vec3(0.0f, 3.9f, 0.0f), glm::vec3(0, 1, 0));
+    const glm::mat4 camera = glm::perspective(glm::radians(38.0f), aspect, 0.5f, 150.0f) *
+                             glm::lookAt(eye, glm::vec3(0.0f, 3.7f, 0.0f), glm::vec3(0, 1, 0));
     gl.ProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, glm::value_ptr(camera));
     gl.ProgramUniform3fv(program, 5, 1, glm::value_ptr(eye));
     gl.ProgramUniform1i(program, 6, settings.rule);
@@ -173,8 +145,8 @@ void run(const Settings& settings) {
     const HostGl gl(load);
     lamina::Device device = check(lamina::Device::fromCurrentContext(load));
 
-    const lamina::TriangleMesh meshes[] = {makeKnot({0.9f, 4.3f, 2.2f}, 1.55f),
-                                           makeWavyBall({-1.9f, 5.4f, 1.9f}, 2.1f),
+    const lamina::TriangleMesh meshes[] = {example::makeKnot({0.9f, 4.3f, 2.2f}, 1.55f, 0.47f),
+                                           example::makeWavyBall({-1.9f, 5.4f, 1.9f}, 2.1f),
                                            example::makeTower()};
     auto builder = check(lamina::SpriteBuilder::create(device));
     std::vector<lamina::DepthSprite> sprites;
