@@ -362,40 +362,6 @@ TEST_F(ParitySpriteGlTest, ErrorsSayWhatIsWrong) {
     EXPECT_THAT(dear.error().text, HasSubstr("8 layers: needs"));
     EXPECT_EQ(sprite.layers(), 2u);
     EXPECT_EQ(device().allocatedBytes(), held);
-
-    EXPECT_THAT(fitSprite({}, {0, 0, 1}, 32).error().text, HasSubstr("a finite box"));
-    EXPECT_THAT(fitSprite(kUnitBox, {0, 0, 0}, 32).error().text, HasSubstr("not zero"));
-    EXPECT_THAT(fitSprite(kUnitBox, {0, 0, 1}, 3).error().text,
-                HasSubstr("at least 4 columns, found 3"));
-}
-
-TEST_F(ParitySpriteGlTest, FittedSpritesHoldTheirBox) {
-    const Box3 box{{3, -2, 7}, {5, 3, 7.5}};
-    for (const glm::dvec3& direction : spriteDirections()) {
-        const auto transform = fitSprite(box, direction, 64).value();
-        EXPECT_EQ(std::max(transform.size().x, transform.size().y), 64u);
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 point((corner & 1) != 0 ? box.max.x : box.min.x,
-                                   (corner & 2) != 0 ? box.max.y : box.min.y,
-                                   (corner & 4) != 0 ? box.max.z : box.min.z);
-            const glm::dvec3 place = transform.worldToGrid(point);
-            for (int axis = 0; axis < 2; ++axis) {
-                EXPECT_GE(place[axis], 1.0 - 1e-6);
-                EXPECT_LE(place[axis], transform.size()[axis] - 1.0 + 1e-6);
-            }
-            EXPECT_GT(place.z, 0.0);
-            EXPECT_LT(place.z, transform.size().z);
-        }
-        // Columns are square, and run along the direction.
-        const glm::dvec3 origin = transform.gridToWorld({0, 0, 0});
-        EXPECT_NEAR(glm::distance(origin, transform.gridToWorld({1, 0, 0})),
-                    glm::distance(origin, transform.gridToWorld({0, 1, 0})), 1e-12);
-        const glm::dvec3 along = transform.gridToWorld({0, 0, 1}) - origin;
-        EXPECT_NEAR(glm::dot(glm::normalize(along), direction), 1.0, 1e-12);
-    }
-    // A flat box along its plane and across it.
-    EXPECT_TRUE(fitSprite({{0, 0, 0}, {1, 1, 0}}, {0, 0, 1}, 16));
-    EXPECT_TRUE(fitSprite({{0, 0, 0}, {0, 0, 1}}, {0, 0, 1}, 16));
 }
 
 } // namespace
