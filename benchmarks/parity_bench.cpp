@@ -148,7 +148,7 @@ void printAccuracy(const Device& device, std::span<const Shape> meshes, std::siz
         const auto expected = reference::pointParity(shape.mesh, points, Axis::X);
         auto buffers = need(MeshBuffers::upload(device, shape.mesh));
         const GeometrySource source = buffers.view();
-        std::string rows[2];
+        std::string rows[3];
         for (const std::uint32_t columns : kColumns) {
             std::vector<DepthSprite> sprites;
             for (const glm::dvec3& axis : {glm::dvec3(0, 0, 1), {1, 0, 0}, {0, 1, 0}}) {
@@ -156,7 +156,7 @@ void printAccuracy(const Device& device, std::span<const Shape> meshes, std::siz
                 need(builder.buildAndWait({&source, 1}, need(fitSprite(box, axis, columns)),
                                           sprites.back()));
             }
-            for (const std::uint32_t directions : {0u, 3u}) {
+            for (const std::uint32_t directions : {0u, 1u, 3u}) {
                 std::vector<SpriteInstance> instances;
                 for (std::size_t i = 0; i < std::max(directions, 1u); ++i)
                     instances.push_back({.sprite = &sprites[i]});
@@ -169,11 +169,13 @@ void printAccuracy(const Device& device, std::span<const Shape> meshes, std::siz
                 char text[32];
                 std::snprintf(text, sizeof text, " %8.4f%%",
                               1e2 * static_cast<double>(wrong) / static_cast<double>(count));
-                rows[directions == 0 ? 0 : 1] += text;
+                rows[std::min(directions, 2u)] += text;
             }
         }
-        std::printf("%-16s %-18s%s\n%-16s %-18s%s\n", shape.name.c_str(), "one", rows[0].c_str(),
-                    "", "three directions", rows[1].c_str());
+        constexpr const char* kMethods[] = {"one", "one, interpolated", "three directions"};
+        for (std::size_t i = 0; i < 3; ++i)
+            std::printf("%-16s %-18s%s\n", i == 0 ? shape.name.c_str() : "", kMethods[i],
+                        rows[i].c_str());
     }
 }
 

@@ -149,29 +149,44 @@ bool laminaParityIsBoundary(uint mask, int count, int shape, int rule) {
 }
 
 // Share, in [0,1], of the four columns around a place that lie inside at its depth, each by its
-// bilinear weight: 0 and 1 where they agree.
+// bilinear weight: 0 and 1 where they agree. Where one surface passes between them, and its depths
+// there differ by at most LAMINA_PARITY_STEEPEST column diagonals, it is interpolated and the answer is
+// 0 or 1 too.
 float laminaParityShare(int sprite, vec3 place) {
     ivec2 columns = ivec2(laminaParitySprite[sprite].size.xy);
     vec2 corner = place.xy - 0.5;
     ivec2 low = ivec2(floor(corner));
     vec2 weight = corner - vec2(low);
-    float share = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 offset = ivec2(i & 1, i >> 1);
-        ivec2 column = low + offset;
-        bool holds = all(greaterThanEqual(column, ivec2(0))) && all(lessThan(column, columns)) && place.z >= 0.0 &&
-                     place.z <= 1.0 && sprite < laminaParityCount();
-        bool inside = holds && (laminaParityLayersBefore(sprite, column, place.z) & 1) != 0;
-        vec2 side = mix(1.0 - weight, weight, equal(offset, ivec2(1)));
-        share += inside ? side.x * side.y : 0.0;
+    vec4 weights = vec4((1.0 - weight.x) * (1.0 - weight.y), weight.x * (1.0 - weight.y),
+                        (1.0 - weight.x) * weight.y, weight.x * weight.y);
+    ivec4 before = ivec4(0);
+    if (sprite < laminaParityCount() && place.z >= 0.0 && place.z <= 1.0) {
+        for (int i = 0; i < 4; ++i) {
+            ivec2 column = low + ivec2(i & 1, i >> 1);
+            if (all(greaterThanEqual(column, ivec2(0))) && all(lessThan(column, columns)))
+                before[i] = laminaParityLayersBefore(sprite, column, place.z);
+        }
+    }
+    float share = dot(weights, vec4(before & 1));
+    int least = min(min(before.x, before.y), min(before.z, before.w));
+    int most = max(max(before.x, before.y), max(before.z, before.w));
+    bool isWithin = all(greaterThanEqual(low, ivec2(0))) && all(lessThan(low, columns - 1));
+    if (most == least + 1 && isWithin) {
+        vec4 depths;
+        for (int i = 0; i < 4; ++i)
+            depths[i] = laminaParityLayer(sprite, low + ivec2(i & 1, i >> 1), least);
+        float nearest = min(min(depths.x, depths.y), min(depths.z, depths.w));
+        float farthest = max(max(depths.x, depths.y), max(depths.z, depths.w));
+        if (farthest - nearest <= LAMINA_PARITY_STEEPEST * laminaParitySprite[sprite].scale.y)
+            share = float((least + int(dot(weights, depths) <= place.z)) & 1);
     }
     return laminaParityInverted(sprite) ? 1.0 - share : share;
 }
 
 // Inside by `directions` sprites of one shape, sprite `first` and those after it, whose axes differ. The
-// first whose columns around the point agree decides; near surfaces nearly parallel to its axis they
-// disagree ([TD08] 5.2: fuzzy edges). Where all disagree, the mean of their shares decides. With one
-// direction that is interpolation, which smooth surfaces gain from.
+// first whose columns around the point agree, or can be interpolated, decides; at surfaces nearly
+// parallel to its axis they do not ([TD08] 5.2: fuzzy edges). Where no direction decides, the mean of
+// their shares does. One direction interpolates, which is enough for smooth surfaces.
 bool laminaParityInsideRefined(int first, int directions, vec3 world) {
     const float kRounding = 1.0e-5;
     float sum = 0.0;

@@ -29,6 +29,10 @@
 // Columns with up to so many crossings are sorted by insertion, others by a heap.
 #define LAMINA_PARITY_INSERTION_LAYERS 16
 
+// Depths of the four columns around a point are taken to be one surface if they differ by at most so
+// many column diagonals.
+#define LAMINA_PARITY_STEEPEST 4.0
+
 // LAMINA_PARITY_PASS: what the fragments of a build do.
 #define LAMINA_PARITY_PASS_COUNT 0
 #define LAMINA_PARITY_PASS_GATHER 1
