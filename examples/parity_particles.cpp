@@ -237,10 +237,18 @@ void run(const Settings& settings) {
         example::draw(gl, shape);
     };
     const lamina::GeometrySource sources[] = {source};
-    const auto place = check(lamina::fitSprite(kRoom, {0, -1, 0}, settings.columns));
+    // README begin
     auto builder = check(lamina::SpriteBuilder::create(device));
     auto sprite = check(lamina::DepthSprite::create(device));
     auto set = check(lamina::SpriteSet::create(device));
+    const auto place = check(lamina::fitSprite(kRoom, {0, -1, 0}, settings.columns));
+    // Every frame that the shape changes; a rigid one is built once, and its localToWorld moves it.
+    const auto prepareFrame = [&] {
+        check(builder.build(sources, place, settings.layers, sprite)); // one geometry pass
+        check(set.update(std::array{lamina::SpriteInstance{.sprite = &sprite}}));
+        set.bind(); // for engine shaders that include <lamina/parity.glsl>
+    };
+    // README end
     const GLuint program = example::makeProgram(
         gl,
         {{GL_COMPUTE_SHADER,
@@ -249,13 +257,11 @@ void run(const Settings& settings) {
     // Every frame; nothing waits for the GPU.
     for (int frame = 0; frame < settings.frames; ++frame) {
         seconds = kStep * static_cast<float>(frame);
-        check(builder.build(sources, place, settings.layers, sprite));
-        check(set.update(std::array{lamina::SpriteInstance{.sprite = &sprite}}));
+        prepareFrame();
         gl.ProgramUniform1f(program, 0, kStep);
         gl.ProgramUniform1f(program, 1, seconds);
         gl.UseProgram(program);
         gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, particles);
-        set.bind();
         gl.DispatchCompute((settings.particles + 63) / 64, 1, 1);
         gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     }

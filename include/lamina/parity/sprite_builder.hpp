@@ -40,7 +40,8 @@ struct SpriteDirection {
 /// by a Voxelizer: closed shapes, of any orientation, cross every column evenly, faces parallel to
 /// the axis and coincident faces included. Move-only; see Device for threads and lifetime.
 ///
-/// Every call leaves the GL state as it was and sprites unchanged if it fails. Writes of the host
+/// Every call leaves the GL state as it was and, unless it says otherwise, sprites unchanged if it
+/// fails. Writes of the host
 /// to its vertex buffers by shaders need GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
 /// GL_ELEMENT_ARRAY_BARRIER_BIT before a call. A DrawSource's callback runs once per geometry pass.
 class LAMINA_API SpriteBuilder {
@@ -63,9 +64,11 @@ public:
                                             DepthSprite& out,
                                             SpriteMethod method = SpriteMethod::SinglePass);
 
-    /// Builds `out` with as many layers as the shape needs, and tells what it found. Waits for the
-    /// GPU. SinglePass tries the layers that `out` has and repeats only if they were too few.
-    /// Errors: as build(); DeviceLimit and OutOfMemory name the layers needed.
+    /// Builds `out` with at least as many layers as the shape needs, and tells what it found. Waits
+    /// for the GPU. SinglePass first tries the layers that `out` has, if its columns are as many;
+    /// if they are too few, and at first, a pass that counts finds the number.
+    /// Errors: as build(); DeviceLimit and OutOfMemory name the layers needed, and `out` may then
+    /// hold the shape with columns that overflow.
     [[nodiscard]] Result<SpriteReport> buildAndWait(std::span<const GeometrySource> sources,
                                                     const GridTransform& transform,
                                                     DepthSprite& out,
