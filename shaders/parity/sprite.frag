@@ -7,16 +7,14 @@
 //      PEEL: layer n is the least depth not in the layers before it, found by MIN blending.
 // Depths are fractions of the sprite's depth range. Crossings before it become 0 and beyond it
 // LAMINA_PARITY_BEYOND, so that shapes that reach out of the sprite keep their parity.
+// What slicemap.geom hands over follows its coverage; sprites are drawn with LAMINA_COVERAGE_SAMPLED.
+// permute LAMINA_COVERAGE = LAMINA_COVERAGE_SAMPLED LAMINA_COVERAGE_FILLED LAMINA_COVERAGE_CONSERVATIVE LAMINA_COVERAGE_SOLID
 // permute LAMINA_PARITY_PASS = LAMINA_PARITY_PASS_COUNT LAMINA_PARITY_PASS_GATHER LAMINA_PARITY_PASS_PEEL
 #include <lamina/shared/parity_block.glsl>
 #include <voxelize/draw_block.glsl>
-#include <voxelize/column_triangle.glsl>
 
-layout(location = 0) flat in dvec4 laminaEdge0;
-layout(location = 2) flat in dvec4 laminaEdge1;
-layout(location = 4) flat in dvec4 laminaEdge2;
-layout(location = 6) flat in dvec3 laminaDepthPlane;
-layout(location = 8) flat in dvec2 laminaDepthRange;
+#define LAMINA_STAGE in
+#include <voxelize/column_stage.glsl>
 
 layout(binding = LAMINA_PARITY_COUNT_IMAGE, r32ui) uniform uimage2D laminaCounts;
 
@@ -67,8 +65,10 @@ bool isLeft(ivec2 column, float depth) {
 #endif
 
 void main() {
-    LaminaColumnTriangle triangle =
-        LaminaColumnTriangle(dvec4[3](laminaEdge0, laminaEdge1, laminaEdge2), laminaDepthPlane, laminaDepthRange);
+    LaminaColumnTriangle triangle = kLaminaNoTriangle;
+    triangle.edges = dvec4[3](laminaEdge0, laminaEdge1, laminaEdge2);
+    triangle.depthPlane = laminaDepthPlane;
+    triangle.depthRange = laminaDepthRange;
     dvec2 center = dvec2(gl_FragCoord.xy);
     if (!laminaOwnsPoint(triangle, center))
         discard;

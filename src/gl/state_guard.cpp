@@ -174,30 +174,6 @@ ComputeStateGuard::~ComputeStateGuard() {
     mFeedback.resume(gl);
 }
 
-TextureArrayUnitsGuard::TextureArrayUnitsGuard(DeviceState& device, GLuint units)
-    : mDevice(device)
-    , mUnits(units) {
-    const GladGLContext& gl = device.gl;
-    const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
-    for (GLuint i = 0; i < units; ++i) {
-        gl.ActiveTexture(GL_TEXTURE0 + i);
-        mUnits[i] = {integer(gl, GL_TEXTURE_BINDING_2D_ARRAY), integer(gl, GL_SAMPLER_BINDING)};
-    }
-    gl.ActiveTexture(static_cast<GLenum>(active));
-}
-
-TextureArrayUnitsGuard::~TextureArrayUnitsGuard() {
-    // Binding texture 0 to a unit at once would unbind the targets that we never touched.
-    const GladGLContext& gl = mDevice.gl;
-    const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
-    for (GLuint i = 0; i < mUnits.size(); ++i) {
-        gl.ActiveTexture(GL_TEXTURE0 + i);
-        gl.BindTexture(GL_TEXTURE_2D_ARRAY, static_cast<GLuint>(mUnits[i].texture));
-        gl.BindSampler(i, static_cast<GLuint>(mUnits[i].sampler));
-    }
-    gl.ActiveTexture(static_cast<GLenum>(active));
-}
-
 PixelPackGuard::PixelPackGuard(DeviceState& device)
     : mDevice(device) {
     mBuffer = integer(device.gl, GL_PIXEL_PACK_BUFFER_BINDING);

@@ -98,25 +98,6 @@ private:
     GLint mIndirectBuffer = 0;
 };
 
-/// Saves the 2D array textures and sampler objects of texture units [0, units) and puts them back
-/// when it goes out of scope.
-class TextureArrayUnitsGuard {
-public:
-    LAMINA_API TextureArrayUnitsGuard(DeviceState& device, GLuint units);
-    LAMINA_API ~TextureArrayUnitsGuard();
-    TextureArrayUnitsGuard(const TextureArrayUnitsGuard&) = delete;
-    TextureArrayUnitsGuard& operator=(const TextureArrayUnitsGuard&) = delete;
-
-private:
-    struct Unit {
-        GLint texture = 0;
-        GLint sampler = 0;
-    };
-
-    DeviceState& mDevice;
-    std::vector<Unit> mUnits;
-};
-
 /// Saves the pixel pack state and buffer, and sets the defaults, for a read-back.
 class PixelPackGuard {
 public:

@@ -1,3 +1,4 @@
+#include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 #include "parity/parity_constants.hpp"
@@ -221,7 +222,7 @@ Result<void> PointClassifier::classify(const SpriteSet& sprites, const PointBuff
         return program.error();
     const gl::DebugGroup group(*mImpl->device, "lamina: classify points");
     const gl::ComputeStateGuard guard(*mImpl->device, 2, 2);
-    const gl::TextureArrayUnitsGuard textures(*mImpl->device, sprites.size());
+    const gl::TextureUnitGuard textures(*mImpl->device, 0, sprites.size());
     mImpl->device->gl.UseProgram(*program);
     sprites.bind(LAMINA_PARITY_POINT_SET_BINDING, 0);
     for (std::uint64_t first = 0; first < points.count; first += *batch)

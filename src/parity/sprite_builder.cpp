@@ -1,9 +1,10 @@
+#include "gl/binding_guards.hpp"
+#include "gl/fragment_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 #include "parity/depth_sprite_data.hpp"
 #include "parity/parity_constants.hpp"
 #include "voxelize/column_draw.hpp"
-#include "voxelize/volume_state.hpp"
 
 #include <lamina/parity/sprite_builder.hpp>
 
@@ -16,7 +17,9 @@ namespace lamina {
 namespace {
 
 ColumnStage stage(const char* pass) {
-    return {"lamina depth sprite", "parity/sprite.frag", {{"LAMINA_PARITY_PASS", pass}}};
+    return {"lamina depth sprite",
+            "parity/sprite.frag",
+            {{"LAMINA_COVERAGE", "LAMINA_COVERAGE_SAMPLED"}, {"LAMINA_PARITY_PASS", pass}}};
 }
 
 ColumnStage countStage() {
@@ -149,8 +152,7 @@ void SpriteBuilder::Impl::uploadPeelBlocks(std::uint32_t layers) {
 void SpriteBuilder::Impl::peel(Sources sources, const Prepared& prepared,
                                const detail::DepthSpriteData& sprite, gl::RasterStateGuard& guard) {
     const GladGLContext& gl = device->gl;
-    const BlendStateGuard blend(*device, 1);
-    gl.BlendEquationi(0, GL_MIN);
+    const gl::BlendStateGuard blend(*device, 1, gl::Blending::Minimum);
     uploadPeelBlocks(sprite.layers);
     for (std::uint32_t layer = 0; layer < sprite.layers; ++layer) {
         gl.NamedFramebufferTextureLayer(framebuffer.id(), GL_COLOR_ATTACHMENT0, sprite.texture.id(),
@@ -198,7 +200,7 @@ Result<SpriteReport> SpriteBuilder::Impl::count(Sources sources, const GridTrans
         return reserved.error();
     const gl::DebugGroup group(*device, "lamina: count crossings");
     columns.upload(*prepared, transform);
-    const ImageUnitGuard images(*device, 2);
+    const gl::ImageUnitGuard images(*device, 2);
     {
         gl::RasterStateGuard guard(*device, 2);
         beginDraws(transform);
@@ -239,7 +241,7 @@ Result<SpriteStats> SpriteBuilder::Impl::build(Sources sources, const GridTransf
                                               : "lamina: depth sprite (single pass)");
     const GladGLContext& gl = device->gl;
     columns.upload(*prepared, transform);
-    const ImageUnitGuard images(*device, 2);
+    const gl::ImageUnitGuard images(*device, 2);
     gl.BindImageTexture(LAMINA_PARITY_LAYER_IMAGE, sprite.texture.id(), 0, GL_TRUE, 0,
                         GL_READ_WRITE, GL_R32F);
     {
