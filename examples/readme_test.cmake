@@ -1,5 +1,5 @@
-# Compares the README's C++ block with the lines of engine_snippet.cpp between "README begin" and
-# "README end". Variables: README, SNIPPET.
+# Compares the README's C++ blocks with the lines of the examples that they name, between "README begin"
+# and "README end". Variables: README, EXAMPLES (the folder).
 cmake_minimum_required(VERSION 3.25)
 
 # text_between(<file> <begin> <end> <variable>): the lines after the line `begin` and before `end`.
@@ -20,10 +20,12 @@ function(text_between file begin end variable)
     set(${variable} "${text}" PARENT_SCOPE)
 endfunction()
 
-text_between("${README}" "```cpp\n" "```\n" shown)
-text_between("${SNIPPET}" "    // README begin\n" "    // README end\n" compiled)
-string(REPLACE "\n    " "\n" compiled "\n${compiled}")
-if(NOT "\n${shown}" STREQUAL compiled)
-    message(NOTICE "engine_snippet.cpp compiles:${compiled}")
-    message(FATAL_ERROR "README.md shows other C++ than engine_snippet.cpp compiles, see above")
-endif()
+foreach(name engine_snippet parity_particles)
+    text_between("${README}" "<!-- examples/${name}.cpp, region README; compared by a test -->\n```cpp\n" "```\n" shown)
+    text_between("${EXAMPLES}/${name}.cpp" "    // README begin\n" "    // README end\n" compiled)
+    string(REPLACE "\n    " "\n" compiled "\n${compiled}")
+    if(NOT "\n${shown}" STREQUAL compiled)
+        message(NOTICE "${name}.cpp compiles:${compiled}")
+        message(FATAL_ERROR "README.md shows other C++ than ${name}.cpp compiles, see above")
+    endif()
+endforeach()

@@ -5,12 +5,13 @@
 //   shader_query OUT.png
 
 #include "support/check.hpp"
+#include "support/engine_mesh.hpp"
 #include "support/host_gl.hpp"
+#include "support/target.hpp"
 #include "support/tree.hpp"
 
 #include <lamina/gl/shaders.hpp>
 #include <lamina/grid/voxel_grid.hpp>
-#include <lamina/grid_io/image.hpp>
 #include <lamina/headless/context.hpp>
 #include <lamina/voxelize/voxelizer.hpp>
 
@@ -22,6 +23,7 @@
 namespace {
 
 using example::check;
+using example::EngineMesh;
 using example::HostGl;
 
 constexpr int kWidth = 1280, kHeight = 800;
@@ -118,28 +120,6 @@ void main() {
 }
 )";
 
-/// What the engine keeps of a mesh: its buffers, and a vertex array to draw them.
-struct EngineMesh {
-    lamina::MeshView view;
-    GLuint vertexArray = 0;
-};
-
-EngineMesh upload(const HostGl& gl, const lamina::TriangleMesh& mesh) {
-    EngineMesh made;
-    made.view.vertexBuffer = example::makeBuffer(gl, std::as_bytes(std::span(mesh.positions)));
-    made.view.vertexCount = static_cast<std::uint32_t>(mesh.positions.size());
-    made.view.indexBuffer = example::makeBuffer(gl, std::as_bytes(std::span(mesh.triangles)));
-    made.view.indexType = lamina::IndexType::UInt32;
-    made.view.indexCount = static_cast<std::uint32_t>(3 * mesh.triangles.size());
-    gl.CreateVertexArrays(1, &made.vertexArray);
-    gl.VertexArrayVertexBuffer(made.vertexArray, 0, made.view.vertexBuffer, 0, sizeof(glm::vec3));
-    gl.VertexArrayElementBuffer(made.vertexArray, made.view.indexBuffer);
-    gl.EnableVertexArrayAttrib(made.vertexArray, 0);
-    gl.VertexArrayAttribFormat(made.vertexArray, 0, 3, GL_FLOAT, GL_FALSE, 0);
-    gl.VertexArrayAttribBinding(made.vertexArray, 0, 0);
-    return made;
-}
-
 constexpr float kFar = 60.0f;
 
 lamina::TriangleMesh makeGround() {
@@ -179,40 +159,6 @@ lamina::GridTransform sunGrid(const lamina::Box3& casters, const glm::uvec3& siz
     return check(lamina::GridTransform::camera(camera, size));
 }
 
-/// The engine's multisampled target and the one it is resolved into.
-struct Target {
-    GLuint samples = 0;
-    GLuint resolved = 0;
-};
-
-Target makeTarget(const HostGl& gl) {
-    constexpr GLsizei kSamples = 4;
-    GLuint framebuffers[2], storage[3];
-    gl.CreateFramebuffers(2, framebuffers);
-    gl.CreateRenderbuffers(3, storage);
-    gl.NamedRenderbufferStorageMultisample(storage[0], kSamples, GL_RGBA8, kWidth, kHeight);
-    gl.NamedRenderbufferStorageMultisample(storage[1], kSamples, GL_DEPTH_COMPONENT24, kWidth,
-                                           kHeight);
-    gl.NamedRenderbufferStorageMultisample(storage[2], 0, GL_RGBA8, kWidth, kHeight);
-    gl.NamedFramebufferRenderbuffer(framebuffers[0], GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                                    storage[0]);
-    gl.NamedFramebufferRenderbuffer(framebuffers[0], GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
-                                    storage[1]);
-    gl.NamedFramebufferRenderbuffer(framebuffers[1], GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                                    storage[2]);
-    return {framebuffers[0], framebuffers[1]};
-}
-
-lamina::Image readBack(const HostGl& gl, const Target& target) {
-    gl.BlitNamedFramebuffer(target.samples, target.resolved, 0, 0, kWidth, kHeight, 0, kHeight,
-                            kWidth, 0, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, target.resolved);
-    lamina::Image image{kWidth, kHeight, {}};
-    image.rgba.resize(std::size_t{4} * kWidth * kHeight);
-    gl.ReadPixels(0, 0, kWidth, kHeight, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
-    return image;
-}
-
 GLuint makeEngineProgram(const HostGl& gl) {
     const std::string fragment = "#version 450\n#define LAMINA_GRID_COUNT 2\n" +
                                  check(lamina::shaderSource("lamina/grid.glsl")) + kFragmentShader;
@@ -227,19 +173,13 @@ GLuint makeEngineProgram(const HostGl& gl) {
     return program;
 }
 
-void draw(const HostGl& gl, GLuint program, const Target& target,
+void draw(const HostGl& gl, GLuint program, const example::Target& target,
           std::span<const EngineMesh> meshes) {
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.samples);
-    gl.Viewport(0, 0, kWidth, kHeight);
-    gl.Enable(GL_DEPTH_TEST);
-    const float farthest = 1.0f;
-    gl.ClearNamedFramebufferfv(target.samples, GL_DEPTH, 0, &farthest);
+    example::beginFrame(gl, target);
     gl.UseProgram(program);
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         gl.ProgramUniform1i(program, 4, static_cast<GLint>(i));
-        gl.BindVertexArray(meshes[i].vertexArray);
-        gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(meshes[i].view.indexCount),
-                        GL_UNSIGNED_INT, nullptr);
+        example::draw(gl, meshes[i]);
     }
 }
 
@@ -269,11 +209,11 @@ void run(const char* file) {
                                   woodGrid));
 
     const GLuint program = makeEngineProgram(gl);
-    const Target target = makeTarget(gl);
+    const example::Target target = example::makeTarget(gl, kWidth, kHeight);
     leafGrid.bind(0, 0, 0);
     woodGrid.bind(0, 0, 1);
     draw(gl, program, target, std::array{ground, wood, leaves, upload(gl, makeSky())});
-    check(lamina::writePng(file, readBack(gl, target)));
+    check(lamina::writePng(file, example::readBack(gl, target)));
     std::printf("%s: %zu leaf and %zu wood triangles\n", file, tree.leaves.triangles.size(),
                 tree.wood.triangles.size());
 }

@@ -14,8 +14,10 @@
     X(PFNGLATTACHSHADERPROC, AttachShader)                                                         \
     X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                                                     \
     X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                   \
+    X(PFNGLBINDTEXTUREUNITPROC, BindTextureUnit)                                                   \
     X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                                                   \
     X(PFNGLBLITNAMEDFRAMEBUFFERPROC, BlitNamedFramebuffer)                                         \
+    X(PFNGLBLENDFUNCPROC, BlendFunc)                                                               \
     X(PFNGLCLEARNAMEDFRAMEBUFFERFVPROC, ClearNamedFramebufferfv)                                   \
     X(PFNGLCOMPILESHADERPROC, CompileShader)                                                       \
     X(PFNGLCREATEBUFFERSPROC, CreateBuffers)                                                       \
@@ -26,8 +28,11 @@
     X(PFNGLCREATETEXTURESPROC, CreateTextures)                                                     \
     X(PFNGLCREATEVERTEXARRAYSPROC, CreateVertexArrays)                                             \
     X(PFNGLDELETESHADERPROC, DeleteShader)                                                         \
+    X(PFNGLDEPTHFUNCPROC, DepthFunc)                                                               \
+    X(PFNGLDEPTHMASKPROC, DepthMask)                                                               \
     X(PFNGLDISABLEPROC, Disable)                                                                   \
     X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)                                                   \
+    X(PFNGLDRAWARRAYSPROC, DrawArrays)                                                             \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                         \
     X(PFNGLENABLEPROC, Enable)                                                                     \
     X(PFNGLENABLEVERTEXARRAYATTRIBPROC, EnableVertexArrayAttrib)                                   \
@@ -45,6 +50,7 @@
     X(PFNGLNAMEDFRAMEBUFFERTEXTUREPROC, NamedFramebufferTexture)                                   \
     X(PFNGLNAMEDRENDERBUFFERSTORAGEMULTISAMPLEPROC, NamedRenderbufferStorageMultisample)           \
     X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i)                                                 \
+    X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                                                 \
     X(PFNGLPROGRAMUNIFORM3FVPROC, ProgramUniform3fv)                                               \
     X(PFNGLPROGRAMUNIFORM4FVPROC, ProgramUniform4fv)                                               \
     X(PFNGLPROGRAMUNIFORMMATRIX4FVPROC, ProgramUniformMatrix4fv)                                   \

@@ -93,6 +93,31 @@ void addRevolved(TriangleMesh& mesh, std::span<const glm::vec2> profile, unsigne
              true);
 }
 
+void addRevolvedLoop(TriangleMesh& mesh, std::span<const glm::vec2> loop, unsigned segments,
+                     float from, float to, const Placement& place) {
+    const auto count = static_cast<unsigned>(loop.size());
+    const bool isClosed = to - from > kTurn - 1e-4f;
+    const unsigned rings = isClosed ? segments : segments + 1;
+    const auto at = [&](const glm::vec2& point, unsigned ring) {
+        const float share = static_cast<float>(ring) / static_cast<float>(segments);
+        const float angle = from + (to - from) * share;
+        return place({point.x * std::cos(angle), point.y, point.x * std::sin(angle)});
+    };
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    glm::vec2 middle(0.0f);
+    for (unsigned ring = 0; ring < rings; ++ring)
+        for (const glm::vec2& point : loop) {
+            addVertex(mesh, at(point, ring));
+            middle += point / static_cast<float>(count * rings);
+        }
+    for (unsigned ring = 0; ring < segments; ++ring)
+        joinRings(mesh, first + ring * count, first + (ring + 1) % rings * count, count);
+    if (isClosed)
+        return;
+    joinPole(mesh, first, addVertex(mesh, at(middle, 0)), count, false);
+    joinPole(mesh, first + segments * count, addVertex(mesh, at(middle, segments)), count, true);
+}
+
 void addTube(TriangleMesh& mesh, std::span<const glm::vec3> path, std::span<const float> radii,
              unsigned sides) {
     PathFrame frame = firstFrame(glm::normalize(path[1] - path[0]));

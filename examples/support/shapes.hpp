@@ -21,6 +21,12 @@ using Placement = std::function<glm::vec3(const glm::vec3&)>;
 void addRevolved(lamina::TriangleMesh& mesh, std::span<const glm::vec2> profile, unsigned segments,
                  const Placement& place);
 
+/// Adds what the closed `loop` of (radius, height) sweeps around the y axis from angle `from` to
+/// `to` (radians), placed by `place`. Of less than a full turn, both ends are closed by fans about
+/// the loop's middle: the loop must then be convex.
+void addRevolvedLoop(lamina::TriangleMesh& mesh, std::span<const glm::vec2> loop, unsigned segments,
+                     float from, float to, const Placement& place);
+
 /// Adds a round tube along `path`, `radii` wide at its points; its ends are closed by cones of no
 /// height.
 void addTube(lamina::TriangleMesh& mesh, std::span<const glm::vec3> path,

@@ -1,5 +1,6 @@
 // Uses something of every installed component, so that a static one must bring all it links.
 #include <lamina/core/version.hpp>
+#include <lamina/gl/device.hpp>
 #include <lamina/grid/bit_grid.hpp>
 #include <lamina/headless/context.hpp>
 #ifdef HAS_MESH_IO
@@ -10,6 +11,10 @@
 #endif
 #ifdef HAS_TRANSMITTANCE
 #include <lamina/transmittance/transmittance.hpp>
+#endif
+#ifdef HAS_PARITY
+#include <lamina/parity/sprite_set.hpp>
+#include <lamina/parity/sprite_transform.hpp>
 #endif
 
 #include <cstdio>
@@ -69,9 +74,29 @@ bool transmittanceIsMade() {
 #endif
 }
 
+bool spriteIsRefused() {
+#ifdef HAS_PARITY
+    const auto context = lamina::headless::Context::create();
+    const auto device = lamina::Device::fromCurrentContext(
+        [&](const char* name) { return context->getProcAddress(name); });
+    auto set = lamina::SpriteSet::create(*device);
+    if (!expect(set.hasValue(), "a sprite set"))
+        return false;
+    const lamina::SpriteInstance none[1] = {};
+    return expect(!set->update(none), "a sprite that was not built to be refused") &&
+           expect(lamina::fitSprite({glm::dvec3(0.0), glm::dvec3(1.0)}, {1, 2, 3}, 64).hasValue(),
+                  "the place of a sprite");
+#else
+    return true;
+#endif
+}
+
 } // namespace
 
 int main() {
     static_assert(LAMINA_VERSION_MAJOR >= 0);
-    return contextIsMade() && meshIsRead() && gridIsWritten() && transmittanceIsMade() ? 0 : 1;
+    return contextIsMade() && meshIsRead() && gridIsWritten() && transmittanceIsMade() &&
+                   spriteIsRefused()
+               ? 0
+               : 1;
 }

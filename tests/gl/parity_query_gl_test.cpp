@@ -1,0 +1,517 @@
+// lamina/parity.glsl from every stage, point batches, and their host twin.
+
+#include "gl/support/gl_test.hpp"
+#include "gl/support/parity.hpp"
+#include "parity/parity_constants.hpp"
+
+#include <lamina/gl/shaders.hpp>
+
+#include <reference/crossings.hpp>
+#include <reference/shapes.hpp>
+
+#include <gmock/gmock.h>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <cstring>
+
+namespace lamina {
+namespace {
+
+namespace ref = reference;
+using test::BuiltSprite;
+using testing::HasSubstr;
+
+const Box3 kUnitBox{{-1, -1, -1}, {1, 1, 1}};
+
+std::string parityText(int count, const std::string& settings = {}) {
+    return "#version 450 core\n#define LAMINA_PARITY_COUNT " + std::to_string(count) + "\n" +
+           settings + shaderSource("lamina/parity.glsl").value();
+}
+
+class ParityQueryGlTest : public test::GlTest {
+protected:
+    /// What a compute shader's `vec4 ask(vec3 world)` says of each point.
+    std::vector<glm::vec4> ask(const SpriteSet& set, std::span<const glm::vec3> points,
+                               const std::string& function) {
+        const GLuint program =
+            buildProgram({{GL_COMPUTE_SHADER, parityText(static_cast<int>(std::max(set.size(), 1u)),
+                                                         "#define LAMINA_PARITY_BLOCK_BINDING 3\n"
+                                                         "#define LAMINA_PARITY_TEXTURE_UNIT 5\n") +
+                                                  function + R"(
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Points { float points[]; };
+layout(std430, binding = 1) buffer Results { vec4 results[]; };
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i < uint(results.length()))
+        results[i] = ask(vec3(points[3u * i], points[3u * i + 1u], points[3u * i + 2u]));
+})"}});
+        set.bind(3, 5);
+        std::vector<glm::vec4> results(points.size());
+        runCompute(program, std::as_bytes(points), std::as_writable_bytes(std::span(results)),
+                   static_cast<std::uint32_t>(points.size()));
+        gl().DeleteProgram(program);
+        return results;
+    }
+    std::vector<std::uint32_t> masks(const SpriteSet& set, std::span<const glm::vec3> points,
+                                     const PointQuery& query = {.answer = PointAnswer::Masks}) {
+        const auto bytes =
+            PointClassifier::create(device()).value().download(set, points, query).value();
+        std::vector<std::uint32_t> words(bytes.size() / 4);
+        std::memcpy(words.data(), bytes.data(), bytes.size());
+        return words;
+    }
+};
+
+TEST_F(ParityQueryGlTest, EveryStageAndTheHostGiveTheSameAnswers) {
+    const TriangleMesh knot = ref::makeTorusKnot({0, 0, 0}, 0.55f, 0.12f, 2, 3, 256, 24);
+    const TriangleMesh sponge = ref::makeMengerSponge({0, 0, 0}, 1.5f, 2);
+    const BuiltSprite first(device(), knot, fitSprite(kUnitBox, {0, 0, 1}, 200).value());
+    const BuiltSprite second(device(), sponge, fitSprite(kUnitBox, {1, 2, -1}, 150).value());
+    ASSERT_LE(first.sprite.layers(), 8u);
+    ASSERT_GT(second.sprite.layers(), 8u) << "both ways of searching";
+    const DepthSprite* sprites[] = {&first.sprite, &second.sprite};
+    const SpriteSet set = test::spriteSet(device(), sprites);
+
+    // A pixel a point; each stage writes what it says itself.
+    constexpr GLsizei kSide = 128;
+    constexpr std::size_t kPoints = kSide * kSide;
+    const auto points = test::randomPoints({{-1.2, -1.2, -1.2}, {1.2, 1.2, 1.2}}, kPoints, 17);
+    const std::string vertex = parityText(2) + R"(
+layout(location = 0) in vec3 world;
+layout(location = 0) out vec3 vertexWorld;
+layout(location = 1) out uint vertexMask;
+void main() {
+    vertexWorld = world;
+    vertexMask = laminaParityMask(world);
+    vec2 pixel = vec2(gl_VertexID % 128, gl_VertexID / 128) + 0.5;
+    gl_Position = vec4(pixel / 64.0 - 1.0, 0.0, 1.0);
+})";
+    const std::string geometry = parityText(2) + R"(
+layout(points) in;
+layout(points, max_vertices = 1) out;
+layout(location = 0) in vec3 vertexWorld[];
+layout(location = 1) in uint vertexMask[];
+layout(location = 0) flat out vec3 world;
+layout(location = 1) flat out uvec2 masks;
+void main() {
+    world = vertexWorld[0];
+    masks = uvec2(vertexMask[0], laminaParityMask(vertexWorld[0]));
+    gl_Position = gl_in[0].gl_Position;
+    EmitVertex();
+})";
+    const std::string fragment = parityText(2) + R"(
+layout(location = 0) flat in vec3 world;
+layout(location = 1) flat in uvec2 masks;
+layout(location = 0) out uvec4 answers;
+void main() {
+    answers = uvec4(masks, laminaParityMask(world), 7u);
+})";
+    const GLuint program = buildProgram({{GL_VERTEX_SHADER, vertex},
+                                         {GL_GEOMETRY_SHADER, geometry},
+                                         {GL_FRAGMENT_SHADER, fragment}});
+    GLuint texture = 0, framebuffer = 0, vertexArray = 0, buffer = 0;
+    gl().CreateTextures(GL_TEXTURE_2D, 1, &texture);
+    gl().TextureStorage2D(texture, 1, GL_RGBA32UI, kSide, kSide);
+    gl().CreateFramebuffers(1, &framebuffer);
+    gl().NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, texture, 0);
+    gl().CreateVertexArrays(1, &vertexArray);
+    gl().CreateBuffers(1, &buffer);
+    gl().NamedBufferData(buffer, kPoints * sizeof(glm::vec3), points.data(), GL_STATIC_DRAW);
+    gl().EnableVertexArrayAttrib(vertexArray, 0);
+    gl().VertexArrayAttribFormat(vertexArray, 0, 3, GL_FLOAT, GL_FALSE, 0);
+    gl().VertexArrayVertexBuffer(vertexArray, 0, buffer, 0, sizeof(glm::vec3));
+    gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl().Viewport(0, 0, kSide, kSide);
+    gl().BindVertexArray(vertexArray);
+    gl().UseProgram(program);
+    set.bind();
+    gl().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(kPoints));
+    std::vector<glm::uvec4> drawn(kPoints);
+    gl().ReadPixels(0, 0, kSide, kSide, GL_RGBA_INTEGER, GL_UNSIGNED_INT, drawn.data());
+    gl().UseProgram(0);
+    gl().BindVertexArray(0);
+    gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl().DeleteTextures(1, &texture);
+    gl().DeleteFramebuffers(1, &framebuffer);
+    gl().DeleteVertexArrays(1, &vertexArray);
+    gl().DeleteBuffers(1, &buffer);
+    gl().DeleteProgram(program);
+
+    const auto computed =
+        ask(set, points, "vec4 ask(vec3 world) { return vec4(laminaParityMask(world)); }");
+    const auto batch = masks(set, points);
+    const SpriteLayers hosts[] = {first.sprite.download().value(),
+                                  second.sprite.download().value()};
+    std::size_t roundings = 0;
+    std::size_t insides = 0;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+        ASSERT_EQ(drawn[i].w, 7u) << i;
+        ASSERT_EQ(drawn[i].x, drawn[i].z) << i;
+        ASSERT_EQ(drawn[i].y, drawn[i].z) << i;
+        ASSERT_EQ(static_cast<std::uint32_t>(computed[i].x), drawn[i].z) << i;
+        ASSERT_EQ(batch[i], drawn[i].z) << i;
+        const std::uint32_t host =
+            (hosts[0].inside(points[i]) ? 1u : 0u) | (hosts[1].inside(points[i]) ? 2u : 0u);
+        // Shaders place a point in single precision: at a column's edge it may fall into the next.
+        roundings += host != drawn[i].z ? 1 : 0;
+        insides += host != 0 ? 1 : 0;
+    }
+    EXPECT_LE(roundings, kPoints / 2000);
+    EXPECT_GT(insides, kPoints / 20);
+}
+
+TEST_F(ParityQueryGlTest, SpritesMoveAndTurnInsideOut) {
+    const TriangleMesh knot = ref::makeTorusKnot({0, 0, 0}, 0.55f, 0.2f, 2, 3, 128, 16);
+    const BuiltSprite built(device(), knot, fitSprite(kUnitBox, {0, 0, 1}, 256).value());
+    const SpriteLayers host = built.sprite.download().value();
+    glm::dmat4 placement = glm::translate(glm::dmat4(1.0), {0.4, -0.2, 0.3});
+    placement = glm::rotate(placement, 0.7, glm::dvec3(1, 2, 3));
+    placement = glm::scale(placement, glm::dvec3(1.5, 0.8, 1.1));
+    auto set = SpriteSet::create(device()).value();
+    const SpriteInstance instances[] = {
+        {.sprite = &built.sprite},
+        {.sprite = &built.sprite, .localToWorld = placement},
+        {.sprite = &built.sprite, .localToWorld = placement, .inverted = true}};
+    ASSERT_TRUE(set.update(instances));
+    const auto points = test::randomPoints({{-2, -2, -2}, {2, 2, 2}}, 20000, 3);
+    const auto found = masks(set, points);
+    const glm::dmat4 back = glm::inverse(placement);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool here = host.inside(points[i]);
+        const bool there = host.inside(glm::dvec3(back * glm::dvec4(glm::dvec3(points[i]), 1.0)));
+        wrong += found[i] != ((here ? 1u : 0u) | (there ? 2u : 4u)) ? 1 : 0;
+    }
+    EXPECT_LE(wrong, points.size() / 1000) << "rounding of places";
+}
+
+TEST_F(ParityQueryGlTest, ThirtyTwoSpritesAnswerTogether) {
+    // Slabs [s, s + 2) along x in a row of unit boxes.
+    const TriangleMesh slab = ref::makeBox({0, 0, 0}, {2, 1, 1});
+    const BuiltSprite built(device(), slab, fitSprite(slab.bounds(), {0, 0, 1}, 64).value());
+    std::vector<SpriteInstance> instances(32, SpriteInstance{.sprite = &built.sprite});
+    for (std::size_t s = 0; s < instances.size(); ++s)
+        instances[s].localToWorld = glm::translate(glm::dmat4(1.0), {static_cast<double>(s), 0, 0});
+    auto set = SpriteSet::create(device()).value();
+    ASSERT_TRUE(set.update(instances));
+    std::vector<glm::vec3> points;
+    for (int x = -1; x < 35; ++x)
+        points.emplace_back(static_cast<float>(x) + 0.5f, 0.5f, 0.5f);
+    const auto found = masks(set, points);
+    for (int x = -1; x < 35; ++x) {
+        std::uint64_t expected = 0;
+        for (int s = x - 1; s <= x; ++s)
+            expected |= s >= 0 && s < 32 ? std::uint64_t{1} << s : 0;
+        EXPECT_EQ(found[static_cast<std::size_t>(x + 1)], expected) << x;
+    }
+    instances.push_back(instances[0]);
+    const auto tooMany = set.update(instances);
+    ASSERT_FALSE(tooMany);
+    EXPECT_THAT(tooMany.error().text, HasSubstr("expected at most 32 sprites, found 33"));
+    EXPECT_EQ(set.size(), 32u);
+    const SpriteInstance none[] = {{}};
+    EXPECT_THAT(set.update(none).error().text,
+                HasSubstr("sprite 0: expected a sprite that was built"));
+    const SpriteInstance flat[] = {
+        {.sprite = &built.sprite,
+         .localToWorld = glm::scale(glm::dmat4(1.0), glm::dvec3(1, 1, 0))}};
+    EXPECT_THAT(set.update(flat).error().text, HasSubstr("invertible localToWorld"));
+    // A set without sprites contains nothing.
+    ASSERT_TRUE(set.update({}));
+    EXPECT_EQ(masks(set, points), std::vector<std::uint32_t>(points.size()));
+}
+
+TEST_F(ParityQueryGlTest, RulesAndFormatsAgreeWithMasks) {
+    const TriangleMesh ball = ref::makeIcosphere({0, 0, 0}, 0.6f, 3);
+    const BuiltSprite built(device(), ball, fitSprite(ball.bounds(), {0, 1, 0}, 100).value());
+    std::vector<SpriteInstance> instances;
+    for (const double x : {-0.3, 0.0, 0.3})
+        instances.push_back({.sprite = &built.sprite,
+                             .localToWorld = glm::translate(glm::dmat4(1.0), {x, 0.1, 0})});
+    auto set = SpriteSet::create(device()).value();
+    ASSERT_TRUE(set.update(instances));
+    auto classifier = PointClassifier::create(device()).value();
+    const auto all = test::randomPoints(kUnitBox, 1000, 9);
+    for (const std::size_t count : {1u, 3u, 4u, 31u, 32u, 33u, 127u, 1000u}) {
+        const std::span points(all.data(), count);
+        const auto mask = masks(set, points);
+        for (const SpriteRule rule :
+             {SpriteRule::Union, SpriteRule::Intersection, SpriteRule::Difference}) {
+            const auto bytes =
+                classifier.download(set, points, {.answer = PointAnswer::Bytes, .rule = rule})
+                    .value();
+            const auto bits =
+                classifier.download(set, points, {.answer = PointAnswer::Bits, .rule = rule})
+                    .value();
+            ASSERT_EQ(bytes.size(), (count + 3) / 4 * 4);
+            ASSERT_EQ(bits.size(), (count + 31) / 32 * 4);
+            for (std::size_t i = 0; i < count; ++i) {
+                const bool expected = rule == SpriteRule::Union          ? mask[i] != 0
+                                      : rule == SpriteRule::Intersection ? mask[i] == 7
+                                                                         : mask[i] == 1;
+                ASSERT_EQ(bytes[i], expected ? 1 : 0) << i;
+                ASSERT_EQ((bits[i / 8] >> (i % 8) & 1) != 0, expected) << i;
+            }
+            for (std::size_t i = count; i < bits.size() * 8; ++i)
+                ASSERT_EQ(bits[i / 8] >> (i % 8) & 1, 0) << "past the last point";
+        }
+    }
+    EXPECT_TRUE(classifier.download(set, {}, {}).value().empty());
+}
+
+TEST_F(ParityQueryGlTest, PointsOfTheHostsBuffersAreReadInPlace) {
+    const TriangleMesh ball = ref::makeIcosphere({0, 0, 0}, 0.8f, 3);
+    const BuiltSprite built(device(), ball, fitSprite(ball.bounds(), {0, 0, 1}, 100).value());
+    const DepthSprite* sprites[] = {&built.sprite};
+    const SpriteSet set = test::spriteSet(device(), sprites);
+    const auto points = test::randomPoints(kUnitBox, 500, 2);
+    auto classifier = PointClassifier::create(device()).value();
+    const auto expected = classifier.download(set, points, {.answer = PointAnswer::Bits}).value();
+    // Particles of 28 bytes, from byte 20 on; answers from byte 12 on between sentinels.
+    std::vector<std::uint32_t> particles(5 + 7 * points.size(), 0xffffffffu);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        std::memcpy(particles.data() + 5 + 7 * i, &points[i], sizeof points[i]);
+    std::vector<std::uint32_t> answers(3 + 16 + 1, 0xabababab);
+    GLuint buffers[2];
+    gl().CreateBuffers(2, buffers);
+    gl().NamedBufferData(buffers[0], static_cast<GLsizeiptr>(particles.size() * 4 - 16),
+                         particles.data(), GL_STATIC_DRAW);
+    gl().NamedBufferData(buffers[1], static_cast<GLsizeiptr>(answers.size() * 4), answers.data(),
+                         GL_STATIC_DRAW);
+    PointBuffer input{.buffer = buffers[0], .offsetBytes = 20, .strideBytes = 28, .count = 500};
+    ASSERT_TRUE(classifier.classify(set, input, {.answer = PointAnswer::Bits}, buffers[1], 12));
+    gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl().GetNamedBufferSubData(buffers[1], 0, static_cast<GLsizeiptr>(answers.size() * 4),
+                               answers.data());
+    EXPECT_EQ(std::memcmp(answers.data() + 3, expected.data(), 64), 0);
+    EXPECT_EQ(answers[2], 0xababababu);
+    EXPECT_EQ(answers[19], 0xababababu);
+
+    const auto errorOf = [&](const PointBuffer& from, std::uint64_t offset, PointQuery query = {}) {
+        const auto done = classifier.classify(set, from, query, buffers[1], offset);
+        EXPECT_FALSE(done);
+        return done ? std::string() : done.error().text;
+    };
+    EXPECT_THAT(errorOf({.buffer = 0, .count = 1}, 0),
+                HasSubstr("GL buffers of points and answers"));
+    EXPECT_THAT(errorOf({.buffer = buffers[0], .strideBytes = 8, .count = 1}, 0),
+                HasSubstr("stride 8"));
+    EXPECT_THAT(errorOf({.buffer = buffers[0], .count = 1}, 2), HasSubstr("answer offset 2"));
+    input.count = 501;
+    EXPECT_THAT(errorOf(input, 0), HasSubstr("a buffer that holds 501 points"));
+    input.count = 500;
+    EXPECT_THAT(errorOf(input, 0, {.answer = PointAnswer::Masks}),
+                HasSubstr("2000 bytes for the answers"));
+    EXPECT_THAT(errorOf(input, 0, {.directions = 2}),
+                HasSubstr("found 2 directions and 1 sprites"));
+    EXPECT_THAT(errorOf(input, 0, {.answer = PointAnswer::Classes, .directions = 1}),
+                HasSubstr("no classes with them"));
+    gl().DeleteBuffers(2, buffers);
+}
+
+TEST_F(ParityQueryGlTest, PointsWithoutAPlaceAreOutside) {
+    const TriangleMesh box = ref::makeBox({-1, -1, -1}, {1, 1, 1});
+    const BuiltSprite built(device(), box, fitSprite(box.bounds(), {0, 0, 1}, 32).value());
+    auto set = SpriteSet::create(device()).value();
+    const SpriteInstance instances[] = {{.sprite = &built.sprite},
+                                        {.sprite = &built.sprite, .inverted = true}};
+    ASSERT_TRUE(set.update(instances));
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    const std::vector<glm::vec3> points = {{nan, 0, 0},      {0, nan, 0},       {0, 0, nan},
+                                           {infinity, 0, 0}, {0, -infinity, 0}, {1e38f, 0, 0},
+                                           {0, 0, 5},        {0, 0, 0}};
+    EXPECT_EQ(masks(set, points), (std::vector<std::uint32_t>{2, 2, 2, 2, 2, 2, 2, 1}));
+}
+
+TEST_F(ParityQueryGlTest, BorderPointsAreReportedAndTheRestIsRight) {
+    const TriangleMesh ball = ref::makeIcosphere({0.1f, 0, 0}, 0.7f, 5);
+    const auto transform = fitSprite(kUnitBox, {1, 1, 2}, 128).value();
+    const BuiltSprite built(device(), ball, transform);
+    const DepthSprite* sprites[] = {&built.sprite};
+    const auto points = test::randomPoints(kUnitBox, 50000, 13);
+    const auto classes =
+        test::classify(device(), sprites, points, {.answer = PointAnswer::Classes});
+    const double diagonal = test::diagonalOf(transform);
+    std::size_t borders = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double distance = glm::distance(glm::dvec3(points[i]), {0.1, 0, 0}) - 0.7;
+        borders += classes[i] == 2 ? 1 : 0;
+        if (classes[i] != 2) {
+            // The icosphere's faces lie up to 4e-4 inside the ball.
+            ASSERT_EQ(classes[i], distance < -2e-4 ? 1 : 0) << distance;
+        } else {
+            // The columns around lie within 1.5 diagonals of the point, and reach one along the
+            // axis.
+            ASSERT_LE(std::abs(distance), 2.6 * diagonal + 4e-4);
+        }
+        // Within half a column it is always the border.
+        if (std::abs(distance) < 0.3 * diagonal) {
+            ASSERT_EQ(classes[i], 2) << distance / diagonal;
+        }
+    }
+    EXPECT_GT(borders, 1000u);
+}
+
+TEST_F(ParityQueryGlTest, CombinedBordersAreWhereTheyDecide) {
+    // Two boxes that overlap in [0, 0.5]: their faces inside the other are no border of the union.
+    const TriangleMesh box = ref::makeBox({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f});
+    const BuiltSprite built(device(), box, fitSprite(box.bounds(), {0, 0, 1}, 64).value());
+    auto set = SpriteSet::create(device()).value();
+    const SpriteInstance instances[] = {
+        {.sprite = &built.sprite},
+        {.sprite = &built.sprite, .localToWorld = glm::translate(glm::dmat4(1.0), {0.5, 0, 0})}};
+    ASSERT_TRUE(set.update(instances));
+    const std::vector<glm::vec3> points = {{-0.5f, 0, 0}, {0.0f, 0, 0},   {0.5f, 0, 0},
+                                           {1.0f, 0, 0},  {-0.25f, 0, 0}, {0.25f, 0, 0}};
+    auto classifier = PointClassifier::create(device()).value();
+    const auto of = [&](SpriteRule rule) {
+        auto found =
+            classifier.download(set, points, {.answer = PointAnswer::Classes, .rule = rule})
+                .value();
+        found.resize(points.size());
+        return found;
+    };
+    using Bytes = std::vector<std::uint8_t>;
+    EXPECT_EQ(of(SpriteRule::Union), (Bytes{2, 1, 1, 2, 1, 1}));
+    EXPECT_EQ(of(SpriteRule::Intersection), (Bytes{0, 2, 2, 0, 0, 1}));
+    EXPECT_EQ(of(SpriteRule::Difference), (Bytes{2, 2, 0, 0, 1, 0}));
+    // The surfaces that bound a combination.
+    const auto boundary = ask(set, points, R"(
+vec4 ask(vec3 world) {
+    uint mask = laminaParityMask(world);
+    return vec4(laminaParityIsBoundary(mask, 2, 1, LAMINA_PARITY_UNION),
+                laminaParityIsBoundary(mask, 2, 1, LAMINA_PARITY_INTERSECTION),
+                laminaParityIsBoundary(mask, 2, 1, LAMINA_PARITY_DIFFERENCE), 0.0);
+})");
+    EXPECT_EQ(boundary[1], glm::vec4(0, 1, 1, 0)) << "on the second box's face, inside the first";
+    EXPECT_EQ(boundary[3], glm::vec4(1, 0, 0, 0)) << "on its other face, outside the first";
+}
+
+TEST_F(ParityQueryGlTest, DistancesAreThoseOfTheColumnsCrossings) {
+    const float radii[] = {0.9f, 0.7f, 0.4f};
+    const TriangleMesh shells = ref::makeNestedShells({0, 0, 0}, radii, 4);
+    const auto transform = fitSprite(kUnitBox, {0.2, -0.4, 1}, 64).value();
+    const BuiltSprite built(device(), shells, transform);
+    auto set = SpriteSet::create(device()).value();
+    const double scale = 2.5;
+    const SpriteInstance instances[] = {
+        {.sprite = &built.sprite, .localToWorld = glm::scale(glm::dmat4(1.0), glm::dvec3(scale))}};
+    ASSERT_TRUE(set.update(instances));
+    const auto points = test::randomPoints({{-2.6, -2.6, -2.6}, {2.6, 2.6, 2.6}}, 5000, 23);
+    const auto found = ask(set, points, R"(
+vec4 ask(vec3 world) {
+    LaminaParityProbe probe = laminaParityProbe(0, world);
+    return vec4(probe.before, probe.after, laminaParityDistance(0, world), probe.crossings);
+})");
+    const ref::ColumnCrossings columns(shells, transform);
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::dvec3 local = glm::dvec3(points[i]) / scale;
+        const glm::dvec3 place = transform.worldToGrid(local);
+        const glm::dvec2 edge = glm::abs(glm::dvec2(place) - glm::round(glm::dvec2(place)));
+        const bool holds = place.x > 0 && place.y > 0 && place.x < transform.size().x &&
+                           place.y < transform.size().y;
+        if (!holds || std::min(edge.x, edge.y) < 1e-3)
+            continue;
+        const double depth = (transform.worldToColumn() * glm::dvec4(local, 1.0)).z;
+        double before = 3e38, after = 3e38;
+        int crossings = 0;
+        for (const ref::Crossing& crossing : columns.at(glm::uvec2(place))) {
+            const double away = scale * (crossing.depth - depth);
+            crossings += away <= 0.0 ? 1 : 0;
+            if (away <= 0.0)
+                before = std::min(before, -away);
+            else
+                after = std::min(after, away);
+        }
+        if (std::min(before, after) < 1e-5)
+            continue;
+        ++compared;
+        const bool isIn = depth >= transform.nearDepth() && depth <= transform.farDepth();
+        EXPECT_NEAR(found[i].x, before, before < 1e38 ? 1e-5 : 1e33) << i;
+        EXPECT_NEAR(found[i].y, after, after < 1e38 ? 1e-5 : 1e33) << i;
+        EXPECT_EQ(found[i].w, isIn ? static_cast<float>(crossings) : 0.0f) << i;
+        const double nearest = std::min(before, after);
+        const double expected = isIn && crossings % 2 != 0 ? -nearest : nearest;
+        EXPECT_NEAR(found[i].z, expected, nearest < 1e38 ? 1e-5 : 1e33) << i;
+        if (HasFailure())
+            return;
+    }
+    EXPECT_GT(compared, 3000u);
+}
+
+TEST_F(ParityQueryGlTest, CoincidentCrossingsBoundNothing) {
+    const TriangleMesh boxes = ref::merged(ref::makeBox({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.0f}),
+                                           ref::makeBox({-0.5f, -0.5f, 0.0f}, {0.5f, 0.5f, 0.5f}));
+    const BuiltSprite built(device(), boxes, fitSprite(kUnitBox, {0, 0, 1}, 64).value());
+    const DepthSprite* sprites[] = {&built.sprite};
+    const SpriteSet set = test::spriteSet(device(), sprites);
+    const std::vector<glm::vec3> points = {{0, 0, -0.1f}, {0, 0, 0.1f}, {0, 0, -0.75f}};
+    const auto found = ask(set, points, R"(
+vec4 ask(vec3 world) {
+    LaminaParityProbe probe = laminaParityProbe(0, world);
+    return vec4(probe.before, probe.after, laminaParityDistance(0, world), 0.0);
+})");
+    EXPECT_NEAR(found[0].x, 0.4, 1e-6);
+    EXPECT_NEAR(found[0].y, 0.6, 1e-6);
+    EXPECT_NEAR(found[0].z, -0.4, 1e-6);
+    EXPECT_NEAR(found[1].z, -0.4, 1e-6);
+    EXPECT_NEAR(found[2].z, 0.25, 1e-6);
+}
+
+TEST_F(ParityQueryGlTest, NormalsPointOutOfTheShape) {
+    const TriangleMesh ball = ref::makeIcosphere({0, 0, 0}, 0.8f, 5);
+    const BuiltSprite built(device(), ball, fitSprite(kUnitBox, {0.5, 1, 0.2}, 256).value());
+    const DepthSprite* sprites[] = {&built.sprite};
+    const SpriteSet set = test::spriteSet(device(), sprites);
+    std::vector<glm::vec3> points;
+    for (const glm::vec3& p : test::randomPoints(kUnitBox, 4000, 4))
+        points.push_back(glm::normalize(p) * (0.8f + 0.02f * p.x));
+    const auto normals = ask(
+        set, points, "vec4 ask(vec3 world) { return vec4(laminaParityNormal(0, world), 0.0); }");
+    const glm::dvec3 axis = glm::normalize(glm::dvec3(0.5, 1, 0.2));
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::dvec3 expected = glm::normalize(glm::dvec3(points[i]));
+        // Near the silhouette, where columns end, there is no slope to see.
+        if (std::abs(glm::dot(expected, axis)) < 0.35)
+            continue;
+        ++compared;
+        EXPECT_GT(glm::dot(glm::dvec3(normals[i]), expected), 0.99) << i;
+    }
+    EXPECT_GT(compared, 2000u);
+}
+
+TEST_F(ParityQueryGlTest, SharedLayoutsMatchTheLinkedProgram) {
+    const GLuint program = buildProgram({{GL_COMPUTE_SHADER, parityText(2) + R"(
+layout(local_size_x = 1) in;
+layout(std430, binding = 1) buffer Out { LaminaSpriteReport report; };
+void main() { report.crossingsHigh = laminaParityMask(vec3(0.0)); }
+)"}});
+    const auto offsetOf = [&](GLenum interface, const char* name) {
+        const GLuint index = gl().GetProgramResourceIndex(program, interface, name);
+        EXPECT_NE(index, GL_INVALID_INDEX) << name;
+        constexpr GLenum kOffset = GL_OFFSET;
+        GLint value = -1;
+        gl().GetProgramResourceiv(program, interface, index, 1, &kOffset, 1, nullptr, &value);
+        return static_cast<std::size_t>(value);
+    };
+    using Sprite = shared::LaminaSpriteConstants;
+    constexpr std::size_t kFirst = offsetof(shared::ParityBlock, sprites);
+    EXPECT_EQ(offsetOf(GL_UNIFORM, "laminaParitySprite[0].worldToSprite[0]"), kFirst);
+    EXPECT_EQ(offsetOf(GL_UNIFORM, "laminaParitySprite[1].size"),
+              kFirst + sizeof(Sprite) + offsetof(Sprite, size));
+    EXPECT_EQ(offsetOf(GL_UNIFORM, "laminaParitySprite[0].scale"),
+              kFirst + offsetof(Sprite, scale));
+    EXPECT_EQ(offsetOf(GL_BUFFER_VARIABLE, "report.crossingsHigh"),
+              offsetof(shared::LaminaSpriteReport, crossingsHigh));
+    gl().DeleteProgram(program);
+}
+
+} // namespace
+} // namespace lamina
