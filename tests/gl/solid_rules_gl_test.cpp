@@ -401,6 +401,20 @@ TEST_F(SolidRulesGlTest, NothingGivesNothing) {
     }
 }
 
+TEST_F(SolidRulesGlTest, OverlapServesTheRulesAndSlicemapParityAlone) {
+    for (const SolidRule rule : {SolidRule::Voted, SolidRule::FloodFill}) {
+        VoxelizerDesc desc{.coverage = Coverage::Solid, .solidRule = rule};
+        const auto chosen = Voxelizer::create(device(), desc).value();
+        EXPECT_EQ(chosen->backend(), Backend::Overlap);
+        EXPECT_THAT(chosen->reason(), HasSubstr(std::string(name(rule))));
+        desc.backend = Backend::Slicemap;
+        const auto refused = Voxelizer::create(device(), desc);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ErrorCode::Unsupported);
+        EXPECT_THAT(refused.error().text, HasSubstr("SolidRule::Parity"));
+    }
+}
+
 TEST_F(SolidRulesGlTest, LimitsAreClearErrors) {
     const TriangleMesh ball = ref::makeIcosphere({0, 0, 0}, 0.9f, 1);
     auto buffers = MeshBuffers::upload(device(), ball).value();
