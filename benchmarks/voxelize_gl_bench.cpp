@@ -55,20 +55,27 @@ void registerRun(const Device& device, const std::string& name, std::shared_ptr<
 } // namespace
 
 void registerVoxelizers(const Device& device, const Case& what) {
-    constexpr VoxelizerDesc kRows[] = {{Backend::MrtSlicemap, Coverage::Filled},
-                                       {Backend::MrtSlicemap, Coverage::Sampled},
-                                       {Backend::MrtSlicemap, Coverage::Conservative},
-                                       {Backend::MrtSlicemap, Coverage::Solid},
-                                       {Backend::Overlap, Coverage::Conservative},
-                                       {Backend::Overlap, Coverage::Separating6},
-                                       {Backend::Overlap, Coverage::Solid}};
+    constexpr VoxelizerDesc kRows[] = {
+        {Backend::MrtSlicemap, Coverage::Filled},
+        {Backend::MrtSlicemap, Coverage::Sampled},
+        {Backend::MrtSlicemap, Coverage::Conservative},
+        {Backend::MrtSlicemap, Coverage::Solid},
+        {Backend::Overlap, Coverage::Conservative},
+        {Backend::Overlap, Coverage::Separating6},
+        {Backend::Overlap, Coverage::Solid},
+        {.backend = Backend::Overlap, .coverage = Coverage::Solid, .solidRule = SolidRule::Voted},
+        {.backend = Backend::Overlap,
+         .coverage = Coverage::Solid,
+         .solidRule = SolidRule::FloodFill}};
     for (const VoxelizerDesc& row : kRows)
-        registerRun(device,
-                    what.describe() + "/lamina " + std::string(name(row.backend)) + " " +
-                        std::string(name(row.coverage)),
-                    what.mesh, row, [resolution = what.resolution](const TriangleMesh& mesh) {
-                        return benchGrid(mesh, resolution);
-                    });
+        registerRun(
+            device,
+            what.describe() + "/lamina " + std::string(name(row.backend)) + " " +
+                std::string(name(row.coverage)) +
+                (row.solidRule == SolidRule::Parity ? "" : " " + std::string(name(row.solidRule))),
+            what.mesh, row, [resolution = what.resolution](const TriangleMesh& mesh) {
+                return benchGrid(mesh, resolution);
+            });
 }
 
 void registerSlicemaps(const Device& device, const std::shared_ptr<NamedMesh>& mesh) {

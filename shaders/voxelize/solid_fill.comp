@@ -4,7 +4,7 @@
 // word by shifts, inverted if the words behind it hold an odd number of crossings. A part needs no
 // other: crossings beyond it were toggled in its last slice.
 #include <voxelize/overlap_source.glsl>
-#include <voxelize/parity_triangle.glsl>
+#include <voxelize/solid_columns.glsl>
 
 void main() {
     uint column = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * LAMINA_OVERLAP_GROUP_SIZE +

@@ -18,6 +18,14 @@ struct GridPart {
     GLintptr offsetBytes = 0;
     GLsizeiptr sizeBytes = 0;
     std::uint32_t skippedTexels = 0; ///< From the binding's start, which is aligned, to the part.
+
+    /// Columns in x and y together.
+    [[nodiscard]] std::uint64_t columns() const {
+        const glm::ivec3 counts = high - low + 1;
+        return static_cast<std::uint64_t>(counts.x) * static_cast<std::uint64_t>(counts.y);
+    }
+    /// Layers of 128 slices.
+    [[nodiscard]] int layers() const { return (high.z >> 7) - (low.z >> 7) + 1; }
 };
 
 /// Slices of a part at most: bounds the loops of one invocation.

@@ -30,9 +30,6 @@ void OverlapPasses::begin(std::span<const OverlapSource> sources, std::span<cons
         for (std::uint64_t first = 0; first < sources[i].triangles; first += kChunkTriangles)
             mChunks.push_back({i, first, std::min(kChunkTriangles, sources[i].triangles - first)});
     uploadConstants(parts, transform);
-    const GLuint queue = mQueue.id();
-    mDevice->gl.BindBuffersBase(GL_SHADER_STORAGE_BUFFER, LAMINA_OVERLAP_QUEUE_BINDING, 1, &queue);
-    mDevice->gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, queue);
 }
 
 void OverlapPasses::uploadConstants(std::span<const GridPart> parts,
@@ -67,22 +64,48 @@ void OverlapPasses::resetQueue() {
     }
 }
 
-void OverlapPasses::dispatch(const OverlapPrograms& programs, const Chunk& chunk,
-                             std::size_t constantsIndex) {
+std::vector<GLuint> OverlapPasses::smallGroups() const {
+    std::vector<GLuint> groups;
+    for (const Chunk& chunk : mChunks)
+        groups.push_back(static_cast<GLuint>((chunk.triangles + LAMINA_OVERLAP_GROUP_SIZE - 1) /
+                                             LAMINA_OVERLAP_GROUP_SIZE));
+    return groups;
+}
+
+void OverlapPasses::run(const OverlapPrograms& programs, std::size_t part,
+                        const DispatchGate& gate) {
     const GladGLContext& gl = mDevice->gl;
+    const GLuint queue = mQueue.id();
+    gl.BindBuffersBase(GL_SHADER_STORAGE_BUFFER, LAMINA_OVERLAP_QUEUE_BINDING, 1, &queue);
+    const std::vector<GLuint> groups = smallGroups();
+    for (std::size_t i = 0; i < mChunks.size(); ++i) {
+        bind(mChunks[i], part * mChunks.size() + i);
+        resetQueue();
+        gl.UseProgram(programs.smallTriangles);
+        if (gate.buffer == 0) {
+            gl.DispatchCompute(groups[i], 1, 1);
+        } else {
+            gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, gate.buffer);
+            gl.DispatchComputeIndirect(gate.offset + static_cast<GLintptr>(i) * gate.stride);
+        }
+        gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+        dispatchLarge(programs);
+    }
+}
+
+void OverlapPasses::bind(const Chunk& chunk, std::size_t constantsIndex) {
     const GLuint constants = mConstants.id();
     const auto offset = static_cast<GLintptr>(constantsIndex * mConstantStride);
     constexpr GLsizeiptr kBytes = sizeof(shared::LaminaOverlapConstants);
-    gl.BindBuffersRange(GL_UNIFORM_BUFFER, LAMINA_OVERLAP_BLOCK_BINDING, 1, &constants, &offset,
-                        &kBytes);
+    mDevice->gl.BindBuffersRange(GL_UNIFORM_BUFFER, LAMINA_OVERLAP_BLOCK_BINDING, 1, &constants,
+                                 &offset, &kBytes);
     mSources[chunk.source].bind(*mDevice, chunk.firstTriangle, chunk.triangles);
-    resetQueue();
-    gl.UseProgram(programs.smallTriangles);
-    gl.DispatchCompute(static_cast<GLuint>((chunk.triangles + LAMINA_OVERLAP_GROUP_SIZE - 1) /
-                                           LAMINA_OVERLAP_GROUP_SIZE),
-                       1, 1);
-    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+}
+
+void OverlapPasses::dispatchLarge(const OverlapPrograms& programs) {
+    const GladGLContext& gl = mDevice->gl;
     gl.UseProgram(programs.largeTriangles);
+    gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, mQueue.id());
     for (GLint queue = 0; queue < LAMINA_OVERLAP_CLASS_COUNT; ++queue) {
         gl.ProgramUniform1i(programs.largeTriangles, 0, queue);
         gl.DispatchComputeIndirect(
@@ -90,12 +113,6 @@ void OverlapPasses::dispatch(const OverlapPrograms& programs, const Chunk& chunk
     }
     // The next chunk clears the queue and writes where this one wrote.
     gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-}
-
-void OverlapPasses::run(const OverlapPrograms& programs, std::size_t part) {
-    std::size_t index = part * mChunks.size();
-    for (const Chunk& chunk : mChunks)
-        dispatch(programs, chunk, index++);
 }
 
 } // namespace lamina

@@ -17,6 +17,13 @@ struct OverlapPrograms {
     GLuint largeTriangles = 0;
 };
 
+/// Indirect dispatches that something on the device may have emptied.
+struct DispatchGate {
+    GLuint buffer = 0; ///< 0: not gated.
+    GLintptr offset = 0;
+    GLintptr stride = 0;
+};
+
 /// Runs such programs over every triangle of the sources and every part of a grid.
 class OverlapPasses {
 public:
@@ -27,12 +34,15 @@ public:
     /// Errors: OutOfMemory.
     [[nodiscard]] Result<void> initialize();
 
-    /// Uploads the constants of all dispatches and binds the queue. The caller has saved the
-    /// compute and unpack state; `sources` is borrowed until the last run().
+    /// Uploads the constants of all dispatches. The caller has saved the compute and unpack state;
+    /// `sources` is borrowed until the last run().
     void begin(std::span<const OverlapSource> sources, std::span<const GridPart> parts,
                const GridTransform& transform);
     /// All triangles into part number `part`. What shaders write is then visible to shaders.
-    void run(const OverlapPrograms& programs, std::size_t part);
+    /// gate: dispatches to use instead of smallGroups(), one for each chunk.
+    void run(const OverlapPrograms& programs, std::size_t part, const DispatchGate& gate = {});
+    /// Work groups along x of the programs for small triangles, a dispatch for each chunk.
+    [[nodiscard]] std::vector<GLuint> smallGroups() const;
 
     /// Are there triangles at all?
     [[nodiscard]] bool hasTriangles() const { return !mChunks.empty(); }
@@ -47,7 +57,9 @@ private:
 
     void uploadConstants(std::span<const GridPart> parts, const GridTransform& transform);
     void resetQueue();
-    void dispatch(const OverlapPrograms& programs, const Chunk& chunk, std::size_t constantsIndex);
+    /// Binds what a chunk needs.
+    void bind(const Chunk& chunk, std::size_t constantsIndex);
+    void dispatchLarge(const OverlapPrograms& programs);
 
     std::shared_ptr<gl::DeviceState> mDevice;
     gl::Buffer mConstants;

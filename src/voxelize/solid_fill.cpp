@@ -1,8 +1,7 @@
 #include "voxelize/solid_fill.hpp"
 
+#include "gl/dispatch.hpp"
 #include "gl/program_cache.hpp"
-
-#include <algorithm>
 
 namespace lamina {
 namespace {
@@ -44,14 +43,8 @@ void SolidFill::begin() {
 
 void SolidFill::fill(const GridPart& part) {
     const GladGLContext& gl = mDevice->gl;
-    const auto rows = static_cast<std::uint64_t>(part.high.y - part.low.y + 1);
-    const std::uint64_t columns = rows * static_cast<std::uint64_t>(part.high.x + 1);
-    const std::uint64_t groups =
-        (columns + LAMINA_OVERLAP_GROUP_SIZE - 1) / LAMINA_OVERLAP_GROUP_SIZE;
-    constexpr std::uint64_t kMaxGroups = LAMINA_OVERLAP_MAX_GROUPS;
     gl.UseProgram(mProgram);
-    gl.DispatchCompute(static_cast<GLuint>(std::min(groups, kMaxGroups)),
-                       static_cast<GLuint>((groups + kMaxGroups - 1) / kMaxGroups), 1);
+    gl::dispatchLinear(gl, part.columns(), LAMINA_OVERLAP_GROUP_SIZE);
 }
 
 Result<SolidReport> SolidFill::download() const {
@@ -60,7 +53,9 @@ Result<SolidReport> SolidFill::download() const {
                      "solid report: expected voxels, found none; voxelize first"};
     GLuint oddColumns = 0;
     mDevice->gl.GetNamedBufferSubData(mColumns.id(), 0, sizeof oddColumns, &oddColumns);
-    return SolidReport{oddColumns};
+    SolidReport report;
+    report.oddColumns = oddColumns;
+    return report;
 }
 
 } // namespace lamina

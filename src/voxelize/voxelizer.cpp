@@ -26,6 +26,18 @@ std::string_view name(Coverage coverage) {
     return "unknown";
 }
 
+std::string_view name(SolidRule rule) {
+    switch (rule) {
+    case SolidRule::Parity:
+        return "parity";
+    case SolidRule::Voted:
+        return "voted";
+    case SolidRule::FloodFill:
+        return "flood";
+    }
+    return "unknown";
+}
+
 std::string_view name(Backend backend) {
     switch (backend) {
     case Backend::Automatic:
@@ -51,8 +63,8 @@ bool isSlicemap(Backend backend) {
            backend == Backend::MrtSlicemap;
 }
 
-bool serves(Backend backend, Coverage coverage) {
-    switch (coverage) {
+bool serves(Backend backend, const VoxelizerDesc& desc) {
+    switch (desc.coverage) {
     case Coverage::Sampled:
         return isSlicemap(backend) || backend == Backend::Volume;
     case Coverage::Filled:
@@ -60,18 +72,30 @@ bool serves(Backend backend, Coverage coverage) {
     case Coverage::Conservative:
         return isSlicemap(backend) || backend == Backend::Overlap;
     case Coverage::Solid:
-        return backend == Backend::Slicemap || backend == Backend::MrtSlicemap ||
-               backend == Backend::Overlap;
+        return backend == Backend::Overlap ||
+               (desc.solidRule == SolidRule::Parity &&
+                (backend == Backend::Slicemap || backend == Backend::MrtSlicemap));
     case Coverage::Separating6:
         break;
     }
     return backend == Backend::Overlap;
 }
 
+/// Does it ask for rays or floods in all directions?
+bool isByRule(const VoxelizerDesc& desc) {
+    return desc.coverage == Coverage::Solid && desc.solidRule != SolidRule::Parity;
+}
+
+/// "solid coverage by rule voted"
+std::string describeCoverage(const VoxelizerDesc& desc) {
+    return std::string(name(desc.coverage)) + " coverage" +
+           (isByRule(desc) ? " by rule " + std::string(name(desc.solidRule)) : "");
+}
+
 /// What Backend::Automatic takes where there is no choice between grids.
 Backend preferred(const VoxelizerDesc& desc) {
-    return desc.localRanges || serves(Backend::MrtSlicemap, desc.coverage) ? Backend::MrtSlicemap
-                                                                           : Backend::Overlap;
+    return desc.localRanges || serves(Backend::MrtSlicemap, desc) ? Backend::MrtSlicemap
+                                                                  : Backend::Overlap;
 }
 
 Error unsupported(const std::string& expected, const std::string& found) {
@@ -87,13 +111,16 @@ Result<void> checkServed(Backend backend, const VoxelizerDesc& desc) {
         return unsupported("a coverage that slicemaps serve with local ranges",
                            coverage + "; use coverage conservative or filled, or uniform ranges by "
                                       "Backend::Automatic (overlap)");
-    if (!serves(backend, desc.coverage)) {
+    if (!serves(backend, desc)) {
         const Backend able =
-            desc.coverage == Coverage::Separating6 ? Backend::Overlap : Backend::MrtSlicemap;
-        return unsupported("a backend that serves " + coverage + " coverage",
+            serves(Backend::MrtSlicemap, desc) ? Backend::MrtSlicemap : Backend::Overlap;
+        VoxelizerDesc byParity = desc;
+        byParity.solidRule = SolidRule::Parity;
+        return unsupported("a backend that serves " + describeCoverage(desc),
                            asked + "; use Backend::Automatic or " + std::string(name(able)) +
-                               ", or coverage " +
-                               (backend == Backend::Volume ? "sampled" : "conservative") +
+                               (serves(backend, byParity)    ? ", or SolidRule::Parity"
+                                : backend == Backend::Volume ? ", or coverage sampled"
+                                                             : ", or coverage conservative") +
                                ", the nearest that " + asked + " serves");
     }
     if (desc.localRanges && backend != Backend::LocalSlicemap && backend != Backend::MrtSlicemap)
@@ -119,12 +146,15 @@ Result<std::unique_ptr<Voxelizer>> createBackend(const Device& device, const Vox
     }
 }
 
-std::string automaticReason(Backend backend, Coverage coverage) {
-    return std::string(name(backend)) + " serves " + std::string(name(coverage)) +
-           " coverage: it " +
-           (backend == Backend::MrtSlicemap ? "decides per column, for every projection and slice "
-                                              "distribution, up to 1024 slices a pass"
-                                            : "tests triangles against voxels exactly");
+std::string automaticReason(const VoxelizerDesc& desc) {
+    const char* why = "tests triangles against voxels exactly";
+    if (desc.backend == Backend::MrtSlicemap)
+        why =
+            "decides per column, for every projection and slice distribution, up to 1024 slices a "
+            "pass";
+    else if (isByRule(desc))
+        why = "looks from all sides";
+    return std::string(name(desc.backend)) + " serves " + describeCoverage(desc) + ": it " + why;
 }
 
 } // namespace
@@ -147,12 +177,18 @@ void Voxelizer::setReason(gl::DeviceState& device, std::string reason) {
     device.say(MessageSeverity::Info, "voxelizer: " + mReason);
 }
 
+Result<BitGrid> Voxelizer::downloadDoubtfulVoxels() const {
+    return Error{ErrorCode::InvalidArgument,
+                 "doubtful voxels: expected a voxelizer of solid coverage by SolidRule::Voted, "
+                 "found another; ask for that rule first"};
+}
+
 Result<std::unique_ptr<Voxelizer>> Voxelizer::create(const Device& device,
                                                      const VoxelizerDesc& desc) {
     const bool isAutomatic = desc.backend == Backend::Automatic;
     // Both serve: which one, the grid of each call decides.
-    if (isAutomatic && !desc.localRanges && !desc.store &&
-        serves(Backend::MrtSlicemap, desc.coverage) && serves(Backend::Overlap, desc.coverage))
+    if (isAutomatic && !desc.localRanges && !desc.store && serves(Backend::MrtSlicemap, desc) &&
+        serves(Backend::Overlap, desc))
         return createAutomaticVoxelizer(device, desc);
     VoxelizerDesc chosen = desc;
     if (isAutomatic)
@@ -165,7 +201,7 @@ Result<std::unique_ptr<Voxelizer>> Voxelizer::create(const Device& device,
     auto created = createBackend(device, chosen);
     if (!created)
         return created;
-    std::string reason = isAutomatic ? automaticReason(chosen.backend, desc.coverage)
+    std::string reason = isAutomatic ? automaticReason(chosen)
                                      : std::string(name(chosen.backend)) + " was asked for";
     if (isMeasured)
         reason += "; the " + std::string(name(*chosen.store)) + " store was measured to be faster";

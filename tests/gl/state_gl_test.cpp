@@ -58,13 +58,16 @@ TEST_F(StateGlTest, DeviceCreationChangesNothing) {
 }
 
 TEST_F(StateGlTest, EveryCallOfAVoxelizationRestoresTheState) {
-    const VoxelizerDesc descs[] = {
-        {.coverage = Coverage::Sampled},      {.coverage = Coverage::Filled},
-        {.coverage = Coverage::Conservative}, {.coverage = Coverage::Separating6},
-        {.coverage = Coverage::Solid},        {Backend::Slicemap, Coverage::Conservative},
-        {Backend::Slicemap, Coverage::Solid}};
+    const VoxelizerDesc descs[] = {{.coverage = Coverage::Sampled},
+                                   {.coverage = Coverage::Filled},
+                                   {.coverage = Coverage::Conservative},
+                                   {.coverage = Coverage::Separating6},
+                                   {.coverage = Coverage::Solid},
+                                   {.coverage = Coverage::Solid, .solidRule = SolidRule::Voted},
+                                   {.coverage = Coverage::Solid, .solidRule = SolidRule::FloodFill},
+                                   {Backend::Slicemap, Coverage::Conservative},
+                                   {Backend::Slicemap, Coverage::Solid}};
     for (const VoxelizerDesc& desc : descs) {
-        const Coverage coverage = desc.coverage;
         // The expected voxels, made in the default state.
         const BitGrid expected = test::voxelize(device(), desc, kBox, unitGrid(200));
         ASSERT_GT(expected.count(), 0u);
@@ -84,12 +87,16 @@ TEST_F(StateGlTest, EveryCallOfAVoxelizationRestoresTheState) {
         });
         std::optional<BitGrid> bits;
         expectUnchanged("download", [&] { bits.emplace(grid->download().value()); });
-        EXPECT_TRUE(compare(*bits, expected)->equal()) << name(coverage);
+        EXPECT_TRUE(compare(*bits, expected)->equal())
+            << name(desc.coverage) << " " << name(desc.solidRule);
         expectUnchanged("upload", [&] { ASSERT_TRUE(grid->upload(*bits)); });
         EXPECT_TRUE(compare(grid->download().value(), *bits)->equal());
-        if (coverage == Coverage::Solid)
+        if (desc.coverage == Coverage::Solid)
             expectUnchanged("downloadSolidReport",
                             [&] { EXPECT_EQ(voxelizer->downloadSolidReport()->oddColumns, 0u); });
+        if (desc.coverage == Coverage::Solid && desc.solidRule == SolidRule::Voted)
+            expectUnchanged("downloadDoubtfulVoxels",
+                            [&] { EXPECT_EQ(voxelizer->downloadDoubtfulVoxels()->count(), 0u); });
         expectUnchanged("resize", [&] { ASSERT_TRUE(grid->resize(unitGrid(300))); });
         for (const VoxelStore store : {VoxelStore::Buffer, VoxelStore::Texture})
             expectUnchanged("resize", [&] { ASSERT_TRUE(grid->resize(unitGrid(200), store)); });

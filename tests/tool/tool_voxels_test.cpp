@@ -201,16 +201,54 @@ INSTANTIATE_TEST_SUITE_P(AxesAndCoverages, ToolReference,
                                                           Coverage::Conservative,
                                                           Coverage::Separating6, Coverage::Solid)));
 
-TEST(ToolVoxels, SolidOfAnOpenMeshWarns) {
+TEST(ToolVoxels, SolidTakesTheRuleThatFitsTheMesh) {
     const TemporaryFolder folder;
-    TriangleMesh open = reference::makeIcosphere({0, 0, 0}, 1.0f, 3);
+    const TriangleMesh ball = reference::makeIcosphere({0, 0, 0}, 1.0f, 3);
+    TriangleMesh open = ball;
     open.triangles.erase(open.triangles.begin(), open.triangles.begin() + 40);
+    writePly(folder / "ball.ply", ball);
+    writePly(folder / "balls.ply",
+             reference::merged(ball, reference::makeIcosphere({0.5f, 0, 0}, 1.0f, 3)));
     writePly(folder / "open.ply", open);
-    const ToolResult solid = runTool({folder / "open.ply", "-r", "64", "--coverage", "solid",
-                                      "--stats", "-", "-o", folder / "open.npy"});
-    EXPECT_EQ(solid.exitCode, 0);
-    EXPECT_NE(solid.err.find("warning: the mesh is not closed"), std::string::npos) << solid.err;
-    EXPECT_GT(nlohmann::json::parse(solid.out)["voxels"]["odd_columns"].get<int>(), 0);
+    const auto solid = [&](const char* mesh, std::vector<std::string> options) {
+        std::vector<std::string> arguments = {folder / mesh, "-r",    "64",
+                                              "--coverage",  "solid", "--stats",
+                                              "-",           "-o",    folder / "solid.npy"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const ToolResult result = runTool(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return std::pair(nlohmann::json::parse(result.out)["voxels"], result.err);
+    };
+    const auto closed = solid("ball.ply", {}).first;
+    EXPECT_EQ(closed["solid_rule"], "parity");
+    EXPECT_EQ(closed["odd_columns"], 0);
+
+    const auto parity = solid("open.ply", {"--solid-rule", "parity"});
+    EXPECT_GT(parity.first["odd_columns"].get<int>(), 0);
+    EXPECT_NE(parity.second.find("warning: the mesh is not closed"), std::string::npos);
+
+    const auto voted = solid("open.ply", {});
+    EXPECT_EQ(voted.first["solid_rule"], "voted");
+    EXPECT_EQ(voted.first["solid_rule_chosen_by"], "mesh");
+    EXPECT_GT(voted.first["doubtful"].get<int>(), 0);
+    EXPECT_NE(voted.second.find("voxels are doubtful"), std::string::npos) << voted.second;
+    // The hole is closed about as the ball was: by a cap a little flatter.
+    EXPECT_NEAR(voted.first["set"].get<double>() / closed["set"].get<double>(), 1.0, 0.03);
+
+    const auto flood = solid("open.ply", {"--solid-rule", "flood"});
+    EXPECT_EQ(flood.first["enclosed"], 0);
+    EXPECT_NE(flood.second.find("encloses nothing"), std::string::npos) << flood.second;
+
+    // Overlapping parts: their union.
+    const auto balls = solid("balls.ply", {}).first;
+    EXPECT_EQ(balls["solid_rule"], "voted");
+    EXPECT_EQ(balls["doubtful"], 0);
+    EXPECT_GT(balls["set"].get<int>(),
+              solid("balls.ply", {"--solid-rule", "parity"}).first["set"].get<int>());
+
+    EXPECT_EQ(
+        runTool({folder / "ball.ply", "--solid-rule", "voted", "-o", folder / "a.npy"}).exitCode,
+        2);
 }
 
 /// Filled by -r: everything that a grid shrunk by 1e-4 of a voxel must have, nothing that one grown

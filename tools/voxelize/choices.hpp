@@ -31,6 +31,12 @@ inline constexpr std::array kCoverages{
     Choice<Coverage>{"solid", Coverage::Solid},
 };
 
+inline constexpr std::array kSolidRules{
+    Choice<SolidRule>{"parity", SolidRule::Parity},
+    Choice<SolidRule>{"voted", SolidRule::Voted},
+    Choice<SolidRule>{"flood", SolidRule::FloodFill},
+};
+
 inline constexpr std::array kBackends{
     Choice<Backend>{"auto", Backend::Automatic},
     Choice<Backend>{"slicemap", Backend::Slicemap},

@@ -65,6 +65,7 @@ struct Arguments {
     std::vector<std::uint32_t> counts;
     std::string axis = "auto";
     std::optional<std::string> coverage;
+    std::string solidRule = "auto";
     std::string backend = "auto";
     std::string attributes = "auto";
     std::string context = "auto";
@@ -125,6 +126,11 @@ void addMethodOptions(CLI::App& app, Arguments& args) {
     app.add_option(
            "--coverage", args.coverage,
            fmt::format("Which voxels count as hit: {} (default conservative)", words(kCoverages)))
+        ->type_name("WORD")
+        ->group(group);
+    app.add_option("--solid-rule", args.solidRule,
+                   fmt::format("What solid takes for the inside: auto, {} (default auto)",
+                               words(kSolidRules)))
         ->type_name("WORD")
         ->group(group);
     app.add_option("--backend", args.backend,
@@ -283,6 +289,15 @@ void takeArguments(const Arguments& args, Request& request) {
         request.coverage = choose("--coverage", kCoverages, *args.coverage);
     if (request.compare && args.coverage)
         request.comparedCoverage = request.coverage;
+    if (args.solidRule != "auto") {
+        request.solidRule = choose("--solid-rule", kSolidRules, args.solidRule);
+        if (request.coverage != Coverage::Solid || request.compare)
+            throw Failure(
+                ExitCode::BadCommandLine,
+                fmt::format("--solid-rule: expected --coverage solid without --compare, "
+                            "found {}",
+                            request.compare ? "--compare" : wordOf(kCoverages, request.coverage)));
+    }
     request.backend = choose("--backend", kBackends, args.backend);
     request.attributes = attributes(args.attributes);
     request.context = choose("--context", kContexts, args.context);

@@ -12,6 +12,18 @@
 namespace lamina::tool {
 namespace {
 
+/// The rule that the command line names; else the fastest that fits the mesh: parity is exact if
+/// inside and outside are defined and parts cannot overlap. Other backends than overlap know no
+/// other.
+SolidRule chooseSolidRule(const Request& request, const MeshFacts& mesh) {
+    if (request.solidRule)
+        return *request.solidRule;
+    const bool isPlain = mesh.report && mesh.report->watertight() && mesh.report->components == 1;
+    const bool canVote =
+        request.backend == Backend::Automatic || request.backend == Backend::Overlap;
+    return isPlain || !canVote ? SolidRule::Parity : SolidRule::Voted;
+}
+
 /// The attributes of the set voxels of `grid`.
 AttributeGrid recordAttributes(const OpenDevice& open, const MeshBuffers& mesh,
                                const VoxelGrid& grid, const AttributeRequest& wanted,
@@ -42,8 +54,11 @@ Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted, 
         require(GridTransform::box(plan.bounds, plan.counts, plan.axis));
     const OpenDevice open = openDevice(request, clock, record);
 
+    const SolidRule rule = chooseSolidRule(request, record.mesh);
     const auto voxelizer = clock.run("programs", "building programs", [&] {
-        return require(Voxelizer::create(open.device, {request.backend, request.coverage}));
+        return require(Voxelizer::create(
+            open.device,
+            {.backend = request.backend, .coverage = request.coverage, .solidRule = rule}));
     });
     const MeshBuffers buffers = clock.run("upload", "uploading the mesh", [&] {
         MeshBuffers uploaded = require(MeshBuffers::upload(open.device, mesh));
@@ -68,11 +83,12 @@ Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted, 
                                stats.passes,
                                stats.gridBytes,
                                bits.count(),
-                               std::nullopt,
                                false,
-                               false};
+                               false,
+                               std::nullopt};
     if (request.coverage == Coverage::Solid)
-        record.voxels->oddColumns = require(voxelizer->downloadSolidReport()).oddColumns;
+        record.voxels->solid =
+            SolidFacts{rule, !request.solidRule, require(voxelizer->downloadSolidReport())};
     if (!wanted.color && !wanted.normal)
         return {std::move(bits), std::nullopt};
     if (grid.hasLocalRanges()) // Attributes are those of the voxels that the files hold.

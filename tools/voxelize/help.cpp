@@ -34,14 +34,22 @@ const char* const kHelpFooter = R"(Coverage:
   conservative  every voxel that a triangle touches (default); a face on the boundary between two
                 voxels sets both
   separating6   a thinner surface without gaps: no path through faces of voxels leads across it
-  solid         the inside of a closed mesh: voxels whose centre lies inside; --stats and a warning
-                tell of columns where the mesh is not closed
+  solid         the inside: voxels whose centre lies inside the mesh, see below
   filled        in each column of voxels whose centre line the triangle crosses, every voxel that it
                 spans there; steep surfaces show gaps between columns
   sampled       in each such column only the voxel where the surface meets the centre line; steep
                 surfaces show holes
   filled and sampled look along one axis (--axis) and are what an engine's rasterizer makes every
   frame. The default axis is the one along which the triangles cover the most columns.
+
+Solid rules, what is inside:
+  parity        an odd number of triangles lies beyond: exact for closed meshes, and fastest; hollow
+                where parts overlap; a warning tells of columns where the mesh is not closed
+  voted         a majority of 14 rays: for meshes with holes, overlaps, doubled or flipped triangles;
+                a warning tells how many voxels were close
+  flood         all that the outside cannot reach: up to a voxel thicker; needs no orientation, but
+                no opening may be wider than a voxel
+  auto takes parity for a watertight mesh of one part and voted for others.
 
 Grid:
   Give one of -r, --voxel-size, or --bounds with --grid. The first two make cubes from the low

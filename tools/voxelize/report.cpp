@@ -86,6 +86,14 @@ Json toJson(const ComparedMethod& method) {
             {"extra", method.againstExact.onlySecond}};
 }
 
+Json toJson(const SolidFacts& solid) {
+    return {{"solid_rule", wordOf(kSolidRules, solid.rule)},
+            {"solid_rule_chosen_by", solid.isRuleChosen ? "mesh" : "command line"},
+            {"odd_columns", solid.report.oddColumns},
+            {"doubtful", solid.report.doubtfulVoxels},
+            {"enclosed", solid.report.enclosedVoxels}};
+}
+
 double voxelCount(const GridPlan& grid) {
     return static_cast<double>(grid.counts.x) * grid.counts.y * grid.counts.z;
 }
@@ -128,8 +136,8 @@ std::string statsJson(const RunRecord& record) {
         if (voxels.hasNormals)
             attributes.push_back("normal");
         json["voxels"]["attributes"] = std::move(attributes);
-        if (voxels.oddColumns)
-            json["voxels"]["odd_columns"] = *voxels.oddColumns;
+        if (voxels.solid)
+            json["voxels"].update(toJson(*voxels.solid));
         json["backend"] = {{"name", voxels.backend},
                            {"reason", voxels.reason},
                            {"passes", voxels.passes},
@@ -168,6 +176,9 @@ std::string summary(const RunRecord& record) {
                         record.voxels->coverage, record.voxels->backend,
                         record.voxels->hasColors ? ", colours" : "",
                         record.voxels->hasNormals ? ", normals" : "");
+    if (record.voxels && record.voxels->solid)
+        text += fmt::format("inside    {}{}\n", wordOf(kSolidRules, record.voxels->solid->rule),
+                            record.voxels->solid->isRuleChosen ? " (chosen)" : "");
     if (record.renderer)
         text += fmt::format("renderer  {}, {}\n", record.renderer->context.kind,
                             record.renderer->context.renderer);

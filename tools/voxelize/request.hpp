@@ -39,6 +39,7 @@ struct Request {
     std::filesystem::path mesh;
     GridRequest grid;
     Coverage coverage = Coverage::Conservative;
+    std::optional<SolidRule> solidRule; ///< Nothing: by what the mesh is like.
     Backend backend = Backend::Automatic;
     AttributeRequest attributes;
     headless::ContextApi context = headless::ContextApi::Automatic;

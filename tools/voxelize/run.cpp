@@ -157,6 +157,28 @@ void warnOfAttributes(const Request& request, const RunRecord& record) {
         fmt::print(stderr, "lamina-voxelize: warning: the mesh has no colours: voxels are white\n");
 }
 
+/// What keeps a solid from being sure.
+void warnAboutSolid(const SolidFacts& solid, const GridPlan& grid) {
+    const auto warn = [](const std::string& text) {
+        fmt::print(stderr, "lamina-voxelize: warning: {}\n", text);
+    };
+    const SolidReport& report = solid.report;
+    if (report.oddColumns > 0)
+        warn(fmt::format("the mesh is not closed: {} of {} columns are crossed an odd number of "
+                         "times and are filled up to their last crossing; use --solid-rule voted",
+                         report.oddColumns, columnCount(grid)));
+    if (solid.rule == SolidRule::Voted && report.doubtfulVoxels > 0)
+        warn(fmt::format("{} voxels are doubtful: 5 or more of their 14 rays disagree with the "
+                         "others, at holes and where triangles are wrong",
+                         report.doubtfulVoxels));
+    if (solid.rule == SolidRule::FloodFill && report.enclosedVoxels == 0)
+        warn("the surface encloses nothing: it has openings wider than a voxel; use --solid-rule "
+             "voted");
+    if (!report.isFloodComplete)
+        warn("the outside winds through more turns than were followed; what lies behind them is "
+             "filled; use --solid-rule voted");
+}
+
 void tell(const Request& request, const RunRecord& record) {
     if (!request.quiet)
         warnOfAttributes(request, record);
@@ -165,13 +187,8 @@ void tell(const Request& request, const RunRecord& record) {
             stderr,
             "lamina-voxelize: warning: no voxel is set; the mesh lies outside the grid, or its "
             "triangles are edge-on to the axis (filled, sampled) or enclose nothing (solid)\n");
-    if (!request.quiet && record.voxels && record.voxels->oddColumns.value_or(0) > 0)
-        fmt::print(
-            stderr,
-            "lamina-voxelize: warning: the mesh is not closed: {} of {} columns are crossed an "
-            "odd number of times and are filled up to their last crossing; repair the mesh, or "
-            "use --coverage conservative\n",
-            *record.voxels->oddColumns, columnCount(*record.grid));
+    if (!request.quiet && record.voxels && record.voxels->solid)
+        warnAboutSolid(*record.voxels->solid, *record.grid);
     if (request.verbose || (!request.quiet && isatty(STDERR_FILENO) == 1))
         fmt::print(stderr, "{}", summary(record));
 }
@@ -183,7 +200,8 @@ void run(const Request& request) {
     RunRecord record;
     checkOutputs(request);
     TriangleMesh mesh = loadMesh(request.mesh, clock, record);
-    if (request.infoOnly || request.stats)
+    const bool needsRule = request.coverage == Coverage::Solid && !request.solidRule;
+    if (request.infoOnly || request.stats || needsRule)
         record.mesh.report =
             clock.run("inspect", "inspecting the mesh", [&] { return require(inspect(mesh)); });
     record.grid = planGrid(request.grid, mesh);

@@ -6,6 +6,7 @@
 #include <lamina/grid/bit_grid.hpp>
 #include <lamina/headless/context.hpp>
 #include <lamina/mesh_io/mesh_report.hpp>
+#include <lamina/voxelize/voxelizer.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -32,6 +33,12 @@ struct RendererFacts {
     bool isSoftware = false;
 };
 
+struct SolidFacts {
+    SolidRule rule = SolidRule::Parity;
+    bool isRuleChosen = false; ///< Not from the command line.
+    SolidReport report;
+};
+
 struct VoxelFacts {
     std::string backend;
     std::string reason; ///< Why this backend.
@@ -39,9 +46,9 @@ struct VoxelFacts {
     std::uint32_t passes = 0;
     std::uint64_t deviceBytes = 0;
     std::uint64_t set = 0;
-    std::optional<std::uint64_t> oddColumns; ///< Of solid coverage: where the mesh is not closed.
     bool hasColors = false;
     bool hasNormals = false;
+    std::optional<SolidFacts> solid; ///< Of solid coverage.
 };
 
 /// A row of --compare.

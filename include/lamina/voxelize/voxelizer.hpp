@@ -34,19 +34,50 @@ enum class Coverage : std::uint8_t {
     /// across
     /// the surface meets a set voxel. Subset of Conservative.
     Separating6,
-    /// Every voxel whose centre lies inside: an odd number of triangles crosses the column's centre
-    /// line beyond it. For closed meshes of any orientation; see downloadSolidReport(). All the
+    /// Every voxel whose centre lies inside, as VoxelizerDesc::solidRule understands it. All the
     /// sources together are one mesh.
     Solid,
+};
+
+/// What is inside, for Coverage::Solid. See downloadSolidReport() for how sure a rule was.
+enum class SolidRule : std::uint8_t {
+    /// An odd number of triangles crosses the column's centre line beyond the voxel's centre
+    /// (even-odd rule). Exact for closed meshes of any orientation, and the fastest. Where parts
+    /// overlap an even number of times, they are hollow; a column through a hole of an open mesh is
+    /// filled up to the nearest crossing without a partner.
+    Parity,
+    /// For open and dirty meshes: rays from each voxel's centre vote. Where the six along the axes
+    /// of the grid agree, they decide; elsewhere the eight along its diagonals (in voxels) vote
+    /// too, and 8 or more of the 14 must find the centre inside. A ray does so if the triangles
+    /// that it crosses, counted with the side they show, do not cancel (non-zero winding rule: the
+    /// rays estimate the generalized winding number [Jacobson et al. 2013]); on lines whose
+    /// crossings come in pairs that do not cancel, which wrongly oriented triangles make, if it
+    /// crosses an odd number.
+    ///
+    /// Equal to Parity for closed meshes without self-intersections, oriented outward or inward.
+    /// Overlapping parts of one orientation become their union, a part of the opposite orientation
+    /// inside another a cavity. Flipped, doubled and missing triangles are outvoted as long as few
+    /// rays of a voxel meet them. A large opening is closed about where a sheet through its rim
+    /// would be. Not exact: the rays are few, so near openings it matters which of them miss.
+    /// Crossings are counted modulo 16: what lies inside of exactly 16 parts counts as outside.
+    Voted,
+    /// Everything that the outside cannot reach: a flood from the faces of the grid, through faces
+    /// of voxels that no triangle touches. Contains every voxel of Coverage::Conservative, so it is
+    /// up to a voxel larger than the solid; exact in that. Needs no orientation and closes openings
+    /// narrower than a voxel; through wider ones the inside is lost. The mesh should lie within the
+    /// grid: a solid that the grid cuts off is open there.
+    FloodFill,
 };
 
 /// How voxels are made.
 enum class Backend : std::uint8_t {
     /// Sampled, Filled, and whatever asks for local ranges: MrtSlicemap; Separating6: Overlap;
     /// Conservative, Solid: Overlap in the grids that it takes, else MrtSlicemap, call by call.
+    /// Solid by another rule than Parity: Overlap.
     Automatic,
     /// Bits by logic op, one pass of the geometry per 128 slices ([ED06] 2.1-2.3). Any grid; all
-    /// coverages but Separating6. Solid by XOR (Eisemann and Decoret 2008).
+    /// coverages but Separating6. Solid by XOR (Eisemann and Decoret 2008), SolidRule::Parity
+    /// alone.
     Slicemap,
     /// Exact triangle/voxel overlap by compute shaders. Orthographic grids with linear slices;
     /// Conservative, Separating6 and Solid.
@@ -62,6 +93,7 @@ enum class Backend : std::uint8_t {
 };
 
 [[nodiscard]] LAMINA_API std::string_view name(Coverage coverage); ///< "sampled"
+[[nodiscard]] LAMINA_API std::string_view name(SolidRule rule);    ///< "parity"
 [[nodiscard]] LAMINA_API std::string_view name(Backend backend);   ///< "slicemap"
 
 struct VoxelizerDesc {
@@ -100,6 +132,7 @@ struct VoxelizeOptions {
     /// the extra pass over the sources. What sticks out of the hull's range, or stands in a column
     /// where there is no hull, is not voxelized. Empty: the sources.
     std::span<const GeometrySource> bounds{};
+    SolidRule solidRule = SolidRule::Parity; ///< For Coverage::Solid; no matter to the others.
 };
 
 /// What a voxelizer can do on its device.
@@ -115,13 +148,21 @@ struct VoxelizerCapabilities {
     bool splits = false;                    ///< voxelizeWith() serves splits and bounds.
 };
 
-/// How far Coverage::Solid could tell inside from outside.
+/// How far Coverage::Solid could tell inside from outside. What a rule does not know is 0.
 struct SolidReport {
-    /// Columns whose centre line an odd number of triangles crosses. There the mesh is not closed,
-    /// and the column is filled up to the nearest crossing without a partner. 0 for closed meshes,
-    /// except in a perspective grid: the eye is then the end of the centre lines, and those are odd
-    /// that leave a mesh in which it stands, rightly filled.
+    /// Parity: columns whose centre line an odd number of triangles crosses. There the mesh is not
+    /// closed. 0 for closed meshes, except in a perspective grid: the eye is then the end of the
+    /// centre lines, and those are odd that leave a mesh in which it stands, rightly filled.
     std::uint64_t oddColumns = 0;
+    /// Voted: voxels on which the axes disagreed and 5 or more of the 14 votes were against the
+    /// majority. 0 for closed, consistently oriented meshes. FloodFill: voxels that the surface
+    /// touches; each belongs to the solid, although its centre may lie outside.
+    std::uint64_t doubtfulVoxels = 0;
+    /// FloodFill: voxels of the solid that the surface does not touch; 0 if the flood got in.
+    std::uint64_t enclosedVoxels = 0;
+    /// FloodFill: the flood reached all it could. False for labyrinths: passages to the outside
+    /// with more than some hundred turns; what lies behind those counts as solid.
+    bool isFloodComplete = true;
 };
 
 /// What one voxelize() call did; known without waiting for the GPU.
@@ -165,18 +206,22 @@ public:
     /// of the host to its vertex buffers by shaders need GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
     /// GL_ELEMENT_ARRAY_BARRIER_BIT before the call. Cost: one pass of the geometry per
     /// capabilities().slicesPerPass slices; a clear of the grid.
+    /// SolidRule::Voted: three passes and, if rays disagree, four more; five to fifty times as much
+    /// work as Parity, more the larger the grid; four times the grid's memory and up to 512 MiB
+    /// more, kept for the next call. FloodFill: as Conservative, then some sweeps over the grid;
+    /// twice its memory.
     [[nodiscard]] virtual Result<VoxelizeStats> voxelize(std::span<const GeometrySource> sources,
                                                          const GridTransform& transform,
                                                          VoxelGrid& out) = 0;
 
     /// As voxelize(), for slicemap backends, with options: into one grid, or with a split into as
-    /// many as it takes. One pass of the geometry fills, for all grids, as many groups of 128 slices
-    /// as eight render targets hold (one group for Slicemap and LocalSlicemap). Split grids keep
-    /// their words in the texture store. With local ranges all grids share one near/far map;
+    /// many as it takes. One pass of the geometry fills, for all grids, as many groups of 128
+    /// slices as eight render targets hold (one group for Slicemap and LocalSlicemap). Split grids
+    /// keep their words in the texture store. With local ranges all grids share one near/far map;
     /// together the grids of Split::Facing hold what one grid would.
     /// Errors: as voxelize(), for all grids; InvalidArgument (a number of grids or a material table
-    /// that does not fit the split, bounds without local ranges); Unsupported (Overlap, a split with
-    /// Solid).
+    /// that does not fit the split, bounds without local ranges); Unsupported (Overlap, a split
+    /// with Solid).
     [[nodiscard]] virtual Result<VoxelizeStats>
     voxelizeWith(std::span<const GeometrySource> sources, const GridTransform& transform,
                  const VoxelizeOptions& options, std::span<VoxelGrid> grids);
@@ -184,6 +229,10 @@ public:
     /// What the last voxelize() with Coverage::Solid found. Waits for the GPU.
     /// Errors: InvalidArgument (another coverage, or nothing voxelized yet).
     [[nodiscard]] virtual Result<SolidReport> downloadSolidReport() const;
+
+    /// The voxels that SolidReport::doubtfulVoxels counts, for SolidRule::Voted. Waits for the GPU.
+    /// Errors: InvalidArgument (another coverage or rule, or nothing voxelized yet), OutOfMemory.
+    [[nodiscard]] virtual Result<BitGrid> downloadDoubtfulVoxels() const;
 
 protected:
     Voxelizer() = default;

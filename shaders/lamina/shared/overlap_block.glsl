@@ -38,6 +38,10 @@
 #define LAMINA_COLORS_FLOAT 1u
 #define LAMINA_COLORS_UNORM8 2u
 
+// What crossings of triangles with columns are noted as: SolidRule::Parity, SolidRule::Voted.
+#define LAMINA_CROSSINGS_PARITY 0
+#define LAMINA_CROSSINGS_SIGNED 1
+
 // Bindings of the overlap programs.
 #define LAMINA_OVERLAP_BLOCK_BINDING 0
 #define LAMINA_OVERLAP_WORDS_BINDING 0

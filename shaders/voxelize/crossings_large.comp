@@ -1,6 +1,9 @@
-// parity.comp for the enqueued triangles of one class; work is shared as in overlap_large.comp.
+// crossings.comp for the enqueued triangles of one class; work is shared as in overlap_large.comp.
+// permute LAMINA_CROSSINGS = LAMINA_CROSSINGS_PARITY LAMINA_CROSSINGS_SIGNED
 #include <voxelize/overlap_source.glsl>
-#include <voxelize/parity_triangle.glsl>
+#include <voxelize/crossing_triangle.glsl>
+#include <voxelize/crossing_parity.glsl>
+#include <voxelize/crossing_signed.glsl>
 #include <voxelize/overlap_queue.glsl>
 
 layout(location = 0) uniform int laminaClass;
@@ -10,14 +13,14 @@ void main() {
     if (!laminaDequeue(laminaClass, index))
         return;
     dvec3 corners[3];
-    LaminaColumnTriangle triangle;
-    if (!laminaFetchTriangle(index, corners) || !laminaParityTriangle(corners, triangle))
+    LaminaCrossingTriangle triangle;
+    if (!laminaFetchTriangle(index, corners) || !laminaCrossingTriangle(corners, triangle))
         return;
     LaminaVoxelBox box = laminaColumnsAround(corners);
     ivec2 counts = laminaBlockCounts(box);
     for (int block = int(gl_WorkGroupID.y); block < counts.x * counts.y; block += int(gl_NumWorkGroups.y)) {
         ivec2 column = box.first.xy + laminaColumnOfBlock(block, counts);
         if (all(lessThanEqual(column, box.last.xy)))
-            laminaToggle(triangle, column.x, column.y);
+            laminaCross(triangle, column.x, column.y);
     }
 }

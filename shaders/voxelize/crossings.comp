@@ -1,13 +1,17 @@
-// Toggles where the triangles of a chunk cross the centre lines of columns, or enqueues large ones.
+// Notes where the triangles of a chunk cross the centre lines of columns, or enqueues large ones.
 //
 // One invocation owns one triangle:
 //   1. fetch it and find the columns of the part around it;
-//   2. if they are many, enqueue it for parity_large.comp;
-//   3. else toggle one bit in each column whose centre it owns. Ownership is decided by the same
-//      numbers for the two triangles of an edge, so a closed mesh crosses each column evenly.
+//   2. if they are many, enqueue it for crossings_large.comp;
+//   3. else note a crossing in each column whose centre it owns: a toggle of one bit of the grid, or a
+//      signed count in the cells of a direction. Ownership is decided by the same numbers for the
+//      two triangles of an edge, so a closed mesh crosses each column evenly, and as often in as out.
 // Edge-on triangles own no centre.
+// permute LAMINA_CROSSINGS = LAMINA_CROSSINGS_PARITY LAMINA_CROSSINGS_SIGNED
 #include <voxelize/overlap_source.glsl>
-#include <voxelize/parity_triangle.glsl>
+#include <voxelize/crossing_triangle.glsl>
+#include <voxelize/crossing_parity.glsl>
+#include <voxelize/crossing_signed.glsl>
 #include <voxelize/overlap_queue.glsl>
 
 void main() {
@@ -26,10 +30,10 @@ void main() {
         laminaEnqueue(index, box);
         return;
     }
-    LaminaColumnTriangle triangle;
-    if (!laminaParityTriangle(corners, triangle))
+    LaminaCrossingTriangle triangle;
+    if (!laminaCrossingTriangle(corners, triangle))
         return;
     for (int y = box.first.y; y <= box.last.y; ++y)
         for (int x = box.first.x; x <= box.last.x; ++x)
-            laminaToggle(triangle, x, y);
+            laminaCross(triangle, x, y);
 }

@@ -1,0 +1,17 @@
+// The solid: all that the flood did not reach; counts the surface and what it encloses. One invocation
+// owns one texel.
+#include <voxelize/flood_part.glsl>
+
+void main() {
+    ivec3 place;
+    if (!laminaPartPlace(place))
+        return;
+    uint index = laminaPartIndex(place.x, place.y, place.z);
+    uvec4 surface = laminaTexels[index];
+    uvec4 solid = ~laminaOutside[index] & laminaSliceBits(place.z);
+    if (solid == surface && solid == uvec4(0u))
+        return;
+    laminaTexels[index] = solid;
+    laminaTallyAdd(LAMINA_TALLY_DOUBTFUL, laminaBitsSet(surface));
+    laminaTallyAdd(LAMINA_TALLY_ENCLOSED, laminaBitsSet(solid & ~surface));
+}
