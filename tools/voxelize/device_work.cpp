@@ -75,8 +75,6 @@ Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted, 
         record.voxels->oddColumns = require(voxelizer->downloadSolidReport()).oddColumns;
     if (!wanted.color && !wanted.normal)
         return {std::move(bits), std::nullopt};
-    if (grid.hasLocalRanges()) // Attributes are those of the voxels that the files hold.
-        require(grid.upload(bits));
     record.voxels->hasColors = wanted.color;
     record.voxels->hasNormals = wanted.normal;
     AttributeGrid attributes = recordAttributes(open, buffers, grid, wanted, clock);
