@@ -38,11 +38,12 @@ std::uint64_t triangleCount(const MeshView& view) {
     return (view.indexType == IndexType::None ? view.vertexCount : view.indexCount) / 3;
 }
 
-Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view, std::size_t index) {
+Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view, std::size_t index,
+                           std::string_view what) {
     const GladGLContext& gl = device.gl;
-    const auto invalid = [index](std::string text) {
-        return Error{ErrorCode::InvalidArgument,
-                     "voxelize: source " + std::to_string(index) + ": " + std::move(text)};
+    const std::string prefix = std::string(what) + " " + std::to_string(index) + ": ";
+    const auto invalid = [&prefix](const std::string& text) {
+        return Error{ErrorCode::InvalidArgument, prefix + text};
     };
     constexpr std::uint64_t kPositionBytes = 3 * sizeof(float);
     if (!gl.IsBuffer(view.vertexBuffer))
@@ -50,8 +51,8 @@ Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view, 
                        std::to_string(view.vertexBuffer));
     if (view.vertexStrideBytes > device.limits.maxVertexAttribStride)
         return Error{ErrorCode::DeviceLimit,
-                     "voxelize: source " + std::to_string(index) + ": vertex stride " +
-                         std::to_string(view.vertexStrideBytes) + " bytes, the device's limit is " +
+                     prefix + "vertex stride " + std::to_string(view.vertexStrideBytes) +
+                         " bytes, the device's limit is " +
                          std::to_string(device.limits.maxVertexAttribStride) +
                          "; repack the vertices"};
     if (view.vertexStrideBytes == 0 || view.positionOffsetBytes % 4 != 0 ||
@@ -100,17 +101,17 @@ Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view, 
     return {};
 }
 
-Result<void> checkDrawSource(const DrawSource& source, std::size_t index) {
+Result<void> checkDrawSource(const DrawSource& source, std::size_t index, std::string_view what) {
+    const std::string prefix = std::string(what) + " " + std::to_string(index) + ": ";
     if (source.vertexShader.empty() || !source.draw)
         return Error{ErrorCode::InvalidArgument,
-                     "voxelize: source " + std::to_string(index) +
-                         ": expected a DrawSource with a vertex stage and a draw callback, found "
+                     prefix +
+                         "expected a DrawSource with a vertex stage and a draw callback, found "
                          "one without"};
     // What 32-bit vertex counts can number.
     constexpr std::uint64_t kMostTriangles = 0xffffffffu / 3;
     if (source.maxTriangles > kMostTriangles)
-        return Error{ErrorCode::DeviceLimit, "voxelize: source " + std::to_string(index) +
-                                                 ": expected maxTriangles up to " +
+        return Error{ErrorCode::DeviceLimit, prefix + "expected maxTriangles up to " +
                                                  std::to_string(kMostTriangles) + ", found " +
                                                  std::to_string(source.maxTriangles)};
     return {};

@@ -27,25 +27,25 @@ struct CapturedTriangles {
 /// host may have its own active. Buffers are kept, one a slot, and reused.
 class TriangleCapture {
 public:
-    TriangleCapture(std::shared_ptr<gl::DeviceState> device, CaptureContent content);
+    LAMINA_API TriangleCapture(std::shared_ptr<gl::DeviceState> device, CaptureContent content);
 
     /// The program for capture(): of the host's vertex stage, or of MeshView sources.
     /// Errors: ShaderError.
-    [[nodiscard]] Result<GLuint> program(const DrawSource& source) const;
-    [[nodiscard]] Result<GLuint> meshProgram() const;
+    [[nodiscard]] LAMINA_API Result<GLuint> program(const DrawSource& source) const;
+    [[nodiscard]] LAMINA_API Result<GLuint> meshProgram() const;
 
     /// A paused transform feedback of the host would not survive another one: Mesa (22.3) keeps the
     /// primitive mode in the context.
     /// Errors: InvalidArgument while the host's is active.
-    [[nodiscard]] Result<void> checkHost() const;
+    [[nodiscard]] LAMINA_API Result<void> checkHost() const;
 
     /// Captures a source's triangles. The state is put back as Voxelizer promises.
     /// Waits for the GPU if a DrawSource does not say how many triangles it draws.
     /// Errors: OutOfMemory.
-    [[nodiscard]] Result<CapturedTriangles> capture(std::size_t slot, const DrawSource& source,
-                                                    GLuint program);
-    [[nodiscard]] Result<CapturedTriangles> capture(std::size_t slot, const MeshView& view,
-                                                    GLuint program);
+    [[nodiscard]] LAMINA_API Result<CapturedTriangles>
+    capture(std::size_t slot, const DrawSource& source, GLuint program);
+    [[nodiscard]] LAMINA_API Result<CapturedTriangles>
+    capture(std::size_t slot, const MeshView& view, GLuint program);
 
 private:
     using Draw = std::function<void(gl::RasterStateGuard&)>;

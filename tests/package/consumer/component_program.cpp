@@ -16,6 +16,9 @@
 #include <lamina/parity/sprite_set.hpp>
 #include <lamina/parity/sprite_transform.hpp>
 #endif
+#ifdef HAS_SHADOW_VOLUMES
+#include <lamina/shadow_volumes/shadow_volumes.hpp>
+#endif
 
 #include <cstdio>
 
@@ -91,12 +94,29 @@ bool spriteIsRefused() {
 #endif
 }
 
+bool shadowsAreMade() {
+#ifdef HAS_SHADOW_VOLUMES
+    auto context = lamina::headless::Context::create();
+    if (!expect(context.hasValue(), "a headless context"))
+        return false;
+    auto device = lamina::Device::fromCurrentContext(
+        [&](const char* name) { return context->getProcAddress(name); });
+    if (!expect(device.hasValue(), "a device"))
+        return false;
+    auto volumes = lamina::ShadowVolumes::create(*device);
+    return expect(volumes && volumes->apply().error().code == lamina::ErrorCode::InvalidArgument,
+                  "shadow volumes that ask for prepare()");
+#else
+    return true;
+#endif
+}
+
 } // namespace
 
 int main() {
     static_assert(LAMINA_VERSION_MAJOR >= 0);
     return contextIsMade() && meshIsRead() && gridIsWritten() && transmittanceIsMade() &&
-                   spriteIsRefused()
+                   spriteIsRefused() && shadowsAreMade()
                ? 0
                : 1;
 }

@@ -1,0 +1,221 @@
+// Every call of the shadow volumes leaves the GL state as it found it, works in a state far from
+// the defaults, and refuses bad input.
+
+#include "gl/state_guard.hpp"
+#include "gl/support/gl_state.hpp"
+#include "gl/support/gl_test.hpp"
+#include "gl/support/shadow_scene.hpp"
+
+#include <reference/shapes.hpp>
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <optional>
+
+namespace lamina {
+namespace {
+
+using test::lookAt;
+using test::SceneHost;
+using testing::HasSubstr;
+
+constexpr glm::uvec2 kSize{64, 48};
+
+class ShadowVolumesStateGlTest : public test::GlTest {
+protected:
+    void SetUp() override {
+        test::GlTest::SetUp();
+        mHost.emplace(device(), std::vector<test::ScenePart>{
+                                    {reference::makePlane({0, 0, 0}, {0, 1, 0}, 20.0f), false},
+                                    {reference::makeCube({0, 1, 0}, 1.0f)},
+                                    {reference::makePlane({1, 1, 1}, {0, 1, 0.2f}, 1.0f)}});
+        mScene.view = lookAt({2, 4, 6}, {0, 0.5, 0}, kSize);
+        mScene.depthTexture = mHost->drawDepth(mScene.view);
+        mScene.light = {1.0, 5.0, 2.0, 1.0};
+        mScene.casters = mHost->casters();
+        mScene.receivers = mHost->sources();
+    }
+    void TearDown() override {
+        mHost.reset();
+        test::GlTest::TearDown();
+    }
+    template<class Call>
+    void expectUnchanged(const char* what, Call&& call) {
+        const auto before = test::readGlState(gl());
+        call();
+        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty()) << what;
+        EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
+    }
+    std::vector<float> picture(ShadowVolumes& volumes) {
+        EXPECT_TRUE(volumes.prepare(mScene));
+        return test::readRed(gl(), volumes.apply().value(), kSize);
+    }
+    void expectRefused(const ShadowScene& scene, const ShadowVolumesDesc& desc, const char* text) {
+        auto volumes = ShadowVolumes::create(device(), desc).value();
+        const auto prepared = volumes.prepare(scene);
+        ASSERT_FALSE(prepared) << text;
+        EXPECT_EQ(prepared.error().code, ErrorCode::InvalidArgument);
+        EXPECT_THAT(prepared.error().text, HasSubstr(text));
+        EXPECT_THAT(prepared.error().text, HasSubstr("shadow volumes"));
+    }
+
+    std::optional<SceneHost> mHost;
+    ShadowScene mScene;
+};
+
+TEST_F(ShadowVolumesStateGlTest, EveryCallRestoresTheState) {
+    for (const bool isOther : {false, true}) {
+        ShadowVolumesDesc desc;
+        desc.lightMapTexels = 64;
+        desc.layers = 40;
+        desc.litmap = !isOther;
+        desc.clipVolumes = isOther;
+        desc.search = isOther ? LayerSearch::Queries : LayerSearch::Reduction;
+        auto expectedFrom = ShadowVolumes::create(device(), desc).value();
+        const auto expected = picture(expectedFrom);
+        ASSERT_THAT(expected, testing::Contains(0.0f));
+
+        // The host's depths, with modes that plain reads would suffer from.
+        gl().TextureParameteri(mScene.depthTexture, GL_TEXTURE_COMPARE_MODE,
+                               GL_COMPARE_REF_TO_TEXTURE);
+        std::vector<float> found;
+        {
+            const test::OddGlState odd(gl());
+            std::optional<ShadowTopology> topology;
+            expectUnchanged("ShadowTopology::create", [&] {
+                topology.emplace(ShadowTopology::create(device(), mHost->sources()[1]).value());
+            });
+            std::optional<ShadowVolumes> volumes;
+            expectUnchanged(
+                "create", [&] { volumes.emplace(ShadowVolumes::create(device(), desc).value()); });
+            expectUnchanged("prepare", [&] { ASSERT_TRUE(volumes->prepare(mScene)); });
+            expectUnchanged("overdraw", [&] { ASSERT_TRUE(volumes->overdraw()); });
+            expectUnchanged("report", [&] {
+                const auto report = volumes->downloadReport();
+                ASSERT_TRUE(report);
+                EXPECT_GT(report->stencilFragments, 0u);
+            });
+            GLuint texture = 0;
+            expectUnchanged("apply", [&] { texture = volumes->apply().value(); });
+            {
+                const gl::PixelPackGuard pack(*device().state());
+                found = test::readRed(gl(), texture, kSize);
+            }
+            expectUnchanged("failed prepare", [&] {
+                ShadowScene bad = mScene;
+                bad.depthTexture = 0;
+                EXPECT_FALSE(volumes->prepare(bad));
+            });
+            expectUnchanged("destruction", [&] {
+                volumes.reset();
+                topology.reset();
+            });
+        }
+        EXPECT_TRUE(found == expected);
+    }
+}
+
+TEST_F(ShadowVolumesStateGlTest, RefusesWhatItCannotServe) {
+    const ShadowVolumesDesc desc{.lightMapTexels = 32};
+    ShadowScene scene = mScene;
+    scene.view.size.x = 65;
+    expectRefused(scene, desc, "65 x 48 texels");
+    scene = mScene;
+    scene.depthTexture = 0;
+    expectRefused(scene, desc, "no texture");
+    scene = mScene;
+    scene.light = glm::dvec4(0.0);
+    expectRefused(scene, desc, "expected a light");
+    scene.light = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 1};
+    expectRefused(scene, desc, "expected a light");
+    scene = mScene;
+    scene.view.worldToClip[1] = glm::dvec4(0.0);
+    expectRefused(scene, desc, "inverse");
+    scene = mScene;
+    std::vector<ShadowCaster> casters = mHost->casters();
+    casters[1].topology = nullptr;
+    scene.casters = casters;
+    expectRefused(scene, desc, "caster 1: expected a topology");
+    casters = mHost->casters();
+    casters[0].topology = casters[1].topology;
+    std::get<MeshView>(casters[0].source).vertexCount = 2;
+    scene.casters = casters;
+    expectRefused(scene, desc, "caster 0: expected the 4 vertices");
+    scene = mScene;
+    scene.receivers = {};
+    ShadowVolumesDesc noLitmap = desc;
+    noLitmap.litmap = false;
+    expectRefused(scene, noLitmap, "expected receivers");
+
+    GLuint query = 0;
+    gl().CreateQueries(GL_SAMPLES_PASSED, 1, &query);
+    gl().BeginQuery(GL_SAMPLES_PASSED, query);
+    ShadowVolumesDesc queries = desc;
+    queries.search = LayerSearch::Queries;
+    expectRefused(mScene, queries, "no active occlusion query");
+    gl().EndQuery(GL_SAMPLES_PASSED);
+    gl().DeleteQueries(1, &query);
+
+    auto volumes = ShadowVolumes::create(device(), desc).value();
+    EXPECT_EQ(volumes.apply().error().code, ErrorCode::InvalidArgument);
+    EXPECT_EQ(volumes.downloadReport().error().code, ErrorCode::InvalidArgument);
+    for (const ShadowVolumesDesc& bad :
+         {ShadowVolumesDesc{.layers = 0}, ShadowVolumesDesc{.layers = 129},
+          ShadowVolumesDesc{.lightMapTexels = 8}, ShadowVolumesDesc{.depthBiasSlope = -1.0f}})
+        EXPECT_EQ(ShadowVolumes::create(device(), bad).error().code, ErrorCode::InvalidArgument);
+    MeshView bad = std::get<MeshView>(mHost->sources()[1]);
+    bad.vertexCount = 3;
+    EXPECT_EQ(ShadowTopology::create(device(), bad).error().code, ErrorCode::InvalidMesh);
+}
+
+TEST_F(ShadowVolumesStateGlTest, NoCastersAndNothingVisibleAreLit) {
+    auto volumes = ShadowVolumes::create(device(), {.lightMapTexels = 32}).value();
+    ShadowScene scene = mScene;
+    scene.casters = {};
+    ASSERT_TRUE(volumes.prepare(scene));
+    EXPECT_THAT(test::readRed(gl(), volumes.apply().value(), kSize), testing::Each(1.0f));
+    scene = mScene;
+    scene.view = lookAt({2, 4, 6}, {2, 40, 8}, kSize);
+    scene.depthTexture = mHost->drawDepth(scene.view);
+    ASSERT_TRUE(volumes.prepare(scene));
+    EXPECT_THAT(test::readRed(gl(), volumes.apply().value(), kSize), testing::Each(1.0f));
+    EXPECT_EQ(volumes.downloadReport()->castersCulled, 2u);
+}
+
+TEST_F(ShadowVolumesStateGlTest, TopologyFindsWhatIsClosed) {
+    const auto topology = [&](const TriangleMesh& mesh) {
+        auto buffers = MeshBuffers::upload(device(), mesh).value();
+        return ShadowTopology::create(device(), buffers.view()).value();
+    };
+    const auto cube = topology(reference::makeCube({0, 0, 0}, 1.0f));
+    EXPECT_TRUE(cube.isClosed());
+    EXPECT_EQ(cube.surface(), CasterSurface::Closed);
+    EXPECT_EQ(cube.edgeCount(), 18u);
+    TriangleMesh split = reference::makeCube({0, 0, 0}, 1.0f);
+    TriangleMesh soup;
+    for (const glm::uvec3& t : split.triangles) {
+        const auto first = static_cast<std::uint32_t>(soup.positions.size());
+        for (glm::length_t k = 0; k < 3; ++k)
+            soup.positions.push_back(split.positions[t[k]]);
+        soup.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    EXPECT_TRUE(topology(soup).isClosed());
+    EXPECT_EQ(topology(soup).edgeCount(), 18u);
+    split.triangles.pop_back();
+    const auto open = topology(split);
+    EXPECT_FALSE(open.isClosed());
+    EXPECT_EQ(open.surface(), CasterSurface::Sheet);
+    EXPECT_EQ(open.edgeCount(), 18u);
+    TriangleMesh turned = reference::makeCube({0, 0, 0}, 1.0f);
+    std::swap(turned.triangles[0].x, turned.triangles[0].y);
+    EXPECT_FALSE(topology(turned).isClosed());
+    // Two cubes that share an edge: four triangles at it.
+    const TriangleMesh pair = reference::merged(reference::makeBox({0, 0, 0}, {1, 1, 1}),
+                                                reference::makeBox({1, 1, 0}, {2, 2, 1}));
+    EXPECT_TRUE(topology(pair).isClosed());
+    EXPECT_EQ(topology(pair).edgeCount(), 36u);
+}
+
+} // namespace
+} // namespace lamina
