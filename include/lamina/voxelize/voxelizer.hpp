@@ -109,6 +109,7 @@ struct VoxelizerDesc {
     /// meanwhile (some frames of 256 x 256 x 1024 voxels). Automatic takes MrtSlicemap with the
     /// texture, so that shaders need not follow the device.
     std::optional<VoxelStore> store{};
+    SolidRule solidRule = SolidRule::Parity; ///< For Coverage::Solid; no matter to the others.
 };
 
 /// How voxelizeWith() sorts triangles into several grids.
@@ -132,7 +133,6 @@ struct VoxelizeOptions {
     /// the extra pass over the sources. What sticks out of the hull's range, or stands in a column
     /// where there is no hull, is not voxelized. Empty: the sources.
     std::span<const GeometrySource> bounds{};
-    SolidRule solidRule = SolidRule::Parity; ///< For Coverage::Solid; no matter to the others.
 };
 
 /// What a voxelizer can do on its device.
