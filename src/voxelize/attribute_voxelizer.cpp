@@ -37,6 +37,12 @@ Result<void> checkGrid(const VoxelGrid& voxels) {
         return Error{ErrorCode::InvalidArgument,
                      "voxel attributes: expected voxels, found a grid of no size; voxelize into it "
                      "first"};
+    if (voxels.hasLocalRanges())
+        return Error{ErrorCode::Unsupported,
+                     "voxel attributes: expected one range of depths for all columns, found a " +
+                         transform->describe() +
+                         " grid with local ranges; resample it by BitGrid::toUniform() and upload "
+                         "the result"};
     if (transform->projection() != Projection::Orthographic ||
         transform->distribution().kind() != SliceDistribution::Kind::Linear)
         return Error{ErrorCode::Unsupported,

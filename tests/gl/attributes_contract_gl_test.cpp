@@ -349,6 +349,11 @@ TEST_F(AttributesContractGlTest, ErrorsSayWhatWasExpected) {
     expectError(voxelizer.voxelize({&source, 1}, {}, perspective, out), ErrorCode::Unsupported,
                 "use VolumeVoxelizer");
 
+    auto local = VoxelGrid::create(device()).value();
+    ASSERT_TRUE(local.resize(testGrid(), VoxelStore::Texture, SliceRanges::Local));
+    expectError(voxelizer.voxelize({&source, 1}, {}, local, out), ErrorCode::Unsupported,
+                "BitGrid::toUniform()");
+
     const VoxelGrid grid = voxels({&source, 1}, testGrid());
     MeshView bad = buffers.view();
     bad.materialId = 7;

@@ -91,6 +91,8 @@ Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted, 
             SolidFacts{rule, !request.solidRule, require(voxelizer->downloadSolidReport())};
     if (!wanted.color && !wanted.normal)
         return {std::move(bits), std::nullopt};
+    if (grid.hasLocalRanges()) // Attributes are those of the voxels that the files hold.
+        require(grid.upload(bits));
     record.voxels->hasColors = wanted.color;
     record.voxels->hasNormals = wanted.normal;
     AttributeGrid attributes = recordAttributes(open, buffers, grid, wanted, clock);

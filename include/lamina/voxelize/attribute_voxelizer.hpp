@@ -61,12 +61,13 @@ public:
     /// DrawSource without maxTriangles.
     /// Errors: InvalidArgument (a grid of no size, a MeshView that does not fit its buffers, a
     /// material id or value out of range), Unsupported (a perspective grid, or slices that are not
-    /// linear: use VolumeVoxelizer), DeviceLimit, OutOfMemory, ShaderError (a DrawSource's vertex
-    /// stage); the GL state is unchanged, `out` is unchanged or holds nothing. GL: `out` may be
-    /// sampled at once, no barrier needed; writes of the host to its vertex buffers by shaders need
-    /// GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT before the call.
-    /// Cost: a pass over the grid's words, one over the geometry for each 512 slices and each batch
-    /// of voxels whose sums (64 bytes each) one storage buffer binding holds.
+    /// linear: use VolumeVoxelizer; local ranges: see BitGrid::toUniform()), DeviceLimit,
+    /// OutOfMemory, ShaderError (a DrawSource's vertex stage); the GL state is unchanged, `out` is
+    /// unchanged or holds nothing. GL: `out` may be sampled at once, no barrier needed; writes of
+    /// the host to its vertex buffers by shaders need GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
+    /// GL_ELEMENT_ARRAY_BARRIER_BIT before the call. Cost: a pass over the grid's words, one over
+    /// the geometry for each 512 slices and each batch of voxels whose sums (64 bytes each) one
+    /// storage buffer binding holds.
     [[nodiscard]] Result<AttributeStats> voxelize(std::span<const GeometrySource> sources,
                                                   std::span<const Material> materials,
                                                   const VoxelGrid& voxels, VoxelAttributes& out);
