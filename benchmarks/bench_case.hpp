@@ -57,6 +57,7 @@ void report(benchmark::State& state, const TriangleMesh& mesh, const GridTransfo
 
 /// Each registers benchmarks of one method, named "mesh/resolution/method".
 void registerVoxelizers(const Device& device, const Case& what);
+void registerAttributes(const Device& device, const Case& what);
 void registerVolumes(const Device& device, const Case& what);
 void registerEpipolar(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
 void registerSlicemaps(const Device& device, const std::shared_ptr<NamedMesh>& mesh);

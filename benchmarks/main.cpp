@@ -61,6 +61,7 @@ void registerAll(const Device& device) {
         for (const std::uint32_t resolution : {128u, 256u, 512u, 1024u}) {
             const bench::Case what{mesh, resolution};
             bench::registerVoxelizers(device, what);
+            bench::registerAttributes(device, what);
             bench::registerHostOverlap(what);
             if (resolution <= 256)
                 bench::registerVolumes(device, what);
