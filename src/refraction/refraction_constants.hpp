@@ -1,5 +1,7 @@
 #pragma once
 
+#include "gl/view_constants.hpp"
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
@@ -15,6 +17,9 @@ using glm::vec4;
 using uint = std::uint32_t;
 #include "lamina/shared/refraction_block.glsl"
 
+static_assert(offsetof(LaminaRefractionConstants, surface) == 11 * 16 &&
+                  sizeof(LaminaRefractionConstants) == 18 * 16,
+              "std140");
 static_assert(sizeof(LaminaThicknessConstants) == 16 && sizeof(LaminaThicknessCounts) == 8,
               "std140, std430");
 

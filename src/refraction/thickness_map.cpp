@@ -89,10 +89,10 @@ Result<void> ThicknessMap::Impl::createObjects(const Device& host) {
         grids.push_back(std::move(*grid));
     }
     auto built = gl::findOrBuildProgram(
-        *device, {"lamina thickness",
-                  {{GL_VERTEX_SHADER, "gl/screen.vert"},
-                   {GL_FRAGMENT_SHADER, "refraction/thickness.frag"}},
-                  {{"LAMINA_INTEGRAL_METHOD", std::to_string(static_cast<int>(desc.method))}}});
+        *device,
+        {"lamina thickness",
+         {{GL_VERTEX_SHADER, "gl/screen.vert"}, {GL_FRAGMENT_SHADER, "refraction/thickness.frag"}},
+         {{"LAMINA_INTEGRAL_METHOD", std::to_string(static_cast<int>(desc.method))}}});
     if (!built)
         return built.error();
     program = *built;
@@ -126,8 +126,8 @@ Result<void> ThicknessMap::Impl::createTable() {
 Result<void> ThicknessMap::Impl::reserve(const glm::uvec2& wanted) {
     if (wanted == size)
         return {};
-    auto texture = gl::createTexture2d(device, GL_R32F, 4, wanted.x, wanted.y, kOperation,
-                                       "lamina thickness");
+    auto texture =
+        gl::createTexture2d(device, GL_R32F, 4, wanted.x, wanted.y, kOperation, "lamina thickness");
     if (!texture)
         return texture.error();
     thickness = std::move(*texture);
@@ -165,8 +165,8 @@ ThicknessMap::~ThicknessMap() = default;
 
 Result<ThicknessMap> ThicknessMap::create(const Device& device, const ThicknessDesc& desc) {
     if (desc.slices < 1 || desc.slices > kMaxSlices)
-        return Error{ErrorCode::InvalidArgument, "thickness: expected 1 to 1024 slices, found " +
-                                                     std::to_string(desc.slices)};
+        return Error{ErrorCode::InvalidArgument,
+                     "thickness: expected 1 to 1024 slices, found " + std::to_string(desc.slices)};
     const gl::DebugGroup group(*device.state(), "lamina: create thickness map");
     auto impl = std::make_unique<Impl>(device, desc);
     if (auto created = impl->createObjects(device); !created)

@@ -43,8 +43,8 @@ TestView lookAtBox(const Box3& bounds, const glm::uvec2& size, bool isPerspectiv
         const double angle = 2.0 * std::asin(radius / distance);
         made.view.worldToClip =
             glm::perspective(angle, aspect, 0.01 * radius, 10.0 * radius) * camera;
-        gridCamera = GridCamera::perspective(camera, angle, aspect, gridCamera.near,
-                                             gridCamera.far);
+        gridCamera =
+            GridCamera::perspective(camera, angle, aspect, gridCamera.near, gridCamera.far);
     } else {
         made.view.worldToClip =
             glm::ortho(-radius * aspect, radius * aspect, -radius, radius, 0.0, 10.0 * radius) *
@@ -139,8 +139,8 @@ protected:
             std::printf("%-14s %4u slices: ideal in %.3f %% of %zu pixels; mean error %.5f, "
                         "nearest/farthest %.5f of the size (%.0f times)\n",
                         name.c_str(), slices, 100.0 * agreement.equal / agreement.covered,
-                        agreement.covered, agreement.meanError * scale,
-                        agreement.meanPlain * scale, agreement.meanPlain / agreement.meanError);
+                        agreement.covered, agreement.meanError * scale, agreement.meanPlain * scale,
+                        agreement.meanPlain / agreement.meanError);
             EXPECT_GE(agreement.equal, 0.99 * agreement.covered);
             // A crossing on a boundary between slices may fall to either side.
             EXPECT_LE(agreement.worst, 1.0);
@@ -152,7 +152,8 @@ protected:
             EXPECT_NEAR(static_cast<double>(report.openColumns),
                         static_cast<double>(agreement.open), 1e-3 * agreement.covered);
             if (slices == 128) {
-                auto table = ThicknessMap::create(device(), {slices, IntegralMethod::Table}).value();
+                auto table =
+                    ThicknessMap::create(device(), {slices, IntegralMethod::Table}).value();
                 ASSERT_TRUE(table.build({&source, 1}, at.view, bounds));
                 EXPECT_EQ(read(table), found) << "table and arithmetic";
                 EXPECT_EQ(table.downloadReport()->openColumns, report.openColumns);

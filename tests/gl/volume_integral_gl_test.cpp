@@ -82,10 +82,10 @@ class VolumeIntegralGlTest : public test::GlTest {
 protected:
     void SetUp() override {
         GlTest::SetUp();
-        mProgram = buildProgram(
-            {{GL_COMPUTE_SHADER, "#version 450 core\n" +
-                                     shaderSource("lamina/volume_integral.glsl").value() +
-                                     kProgram}});
+        mProgram =
+            buildProgram({{GL_COMPUTE_SHADER,
+                           "#version 450 core\n" +
+                               shaderSource("lamina/volume_integral.glsl").value() + kProgram}});
         mTable = gl::Texture::create(device().state(), "table", GL_TEXTURE_2D);
         gl().TextureStorage2D(mTable.id(), 1, GL_RGBA8, 256, 256);
         const auto texels = makeEvaluationTable();
