@@ -35,7 +35,7 @@ enum class RefractionModel : std::uint8_t {
 
 struct RefractionDesc {
     RefractionModel model = RefractionModel::VolumeIntegral;
-    ThicknessDesc thickness; ///< VolumeIntegral.
+    ThicknessDesc thickness{}; ///< VolumeIntegral.
     /// TwoSurfaces, ManySurfaces: voxels a side of the cube around the object, 8 to 1024. Memory:
     /// about 17 bytes a voxel, 49 where materials differ.
     std::uint32_t voxels = 128;
