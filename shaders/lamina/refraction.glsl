@@ -169,7 +169,8 @@ float laminaEmptyStretch(vec3 voxel, vec3 perUnit) {
 
 // Marches a ray that enters the object at `world` through the volume ([CLN11] 4.1). A surface is a run of
 // voxels with similar normals: where it ends, the ray is refracted or totally reflected at the run's mean
-// point and normal. After that, voxels with similar normals are the same surface's until an empty one.
+// point and normal. After that, voxels with similar normals are the same surface's until the ray is some
+// voxels away from its plane.
 LaminaRefracted laminaRefract(vec3 world, vec3 normal, vec3 direction, vec2 pixel) {
     vec4 media[LAMINA_REFRACTION_MAX_MEDIA];
     media[0] = vec4(1.0);
@@ -186,7 +187,8 @@ LaminaRefracted laminaRefract(vec3 world, vec3 normal, vec3 direction, vec2 pixe
     vec4 sum = vec4(0.0);
     vec4 optics = vec4(0.0);
     float center = 0.0;
-    float passed = 0.0; // World units from ray.exit.
+    vec2 slant = vec2(0.0); // Cosines of ray and normal at the run's first and last voxel.
+    float passed = 0.0;     // World units from ray.exit.
     vec3 start = laminaVolumePoint(world);
     vec3 perUnit = ray.direction * laminaRefractionBlock.volume.w;
     for (int i = 0; i < LAMINA_REFRACTION_MAX_STEPS && ray.events < greatest; ++i) {
@@ -200,7 +202,6 @@ LaminaRefracted laminaRefract(vec3 world, vec3 normal, vec3 direction, vec2 pixe
             float stretch = isWaiting ? 0.0 : laminaEmptyStretch(voxel, perUnit);
             if (stretch > 0.0) {
                 passed += max(stretch - step, 0.0);
-                isSame = false;
                 continue;
             }
             found = laminaSurfaceAt(voxel);
@@ -220,8 +221,9 @@ LaminaRefracted laminaRefract(vec3 world, vec3 normal, vec3 direction, vec2 pixe
             sum = vec4(0.0);
             optics = vec4(0.0);
             center = 0.0;
-            bool isKnown = isEntering ? depth + 1 < LAMINA_REFRACTION_MAX_MEDIA : depth > 0;
-            if (isKnown) {
+            // A ray that first nears a surface and then leaves it passes beside it.
+            bool isCrossing = slant.x * slant.y > 0.0;
+            if (isCrossing && (isEntering ? depth + 1 < LAMINA_REFRACTION_MAX_MEDIA : depth > 0)) {
                 // 2. What the medium takes from here to there.
                 ray.transmittance *= depth > 0 ? pow(media[depth].yzw, vec3(distance)) : vec3(1.0);
                 ray.inside += depth > 0 ? distance : 0.0;
@@ -247,12 +249,13 @@ LaminaRefracted laminaRefract(vec3 world, vec3 normal, vec3 direction, vec2 pixe
         }
         if (isOutside)
             break;
-        if (isEmpty) {
-            isSame = false;
+        // Near the last surface the ray may leave its voxels, which stand in steps, and meet them again.
+        float away = passed * abs(dot(perUnit, last));
+        isSame = isSame && away < LAMINA_REFRACTION_SURFACE_DEPTH;
+        if (isEmpty || (isSame && dot(facing, last) >= alike))
             continue;
-        }
-        if (isSame && dot(facing, last) >= alike)
-            continue;
+        slant.y = dot(ray.direction, facing);
+        slant.x = isWaiting ? slant.x : slant.y;
         isSame = false;
         isWaiting = true;
         sum += found.normal;

@@ -8,12 +8,16 @@
 #include <reference/shapes.hpp>
 
 #include <support/glass_reference.hpp>
+#include <support/sky.hpp>
+#include <support/vase.hpp>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lamina {
@@ -87,25 +91,28 @@ protected:
         return seen;
     }
 
-    Errors measure(const char* name, const Bodies& bodies, const TriangleMesh& mesh,
-                   RefractionModel model, int maxExactEvents,
-                   std::span<const Material> materials = {}) {
-        const glm::dvec3 eye(1.2, 0.9, 3.0);
-        const Seen seen = look(bodies, eye, 20);
+    /// Marches the rays: directions and lengths inside, then exits and events, by turns.
+    std::vector<glm::vec4> march(const std::vector<Ray>& rays, std::span<const TriangleMesh> meshes,
+                                 RefractionModel model, std::span<const Material> materials) {
         auto refraction = Refraction::create(device(), {.model = model, .voxels = 256}).value();
         RefractionSettings settings;
         settings.maxEvents = 20;
         EXPECT_TRUE(refraction.setSettings(settings));
         auto environment = Environment::create(device(), {.size = 1}).value();
         refraction.setEnvironment(environment);
-        Material glass;
-        glass.refractiveIndex = static_cast<float>(kIndex);
-        auto buffers = MeshBuffers::upload(device(), mesh).value();
-        const GeometrySource source = buffers.view();
+        std::vector<MeshBuffers> buffers;
+        std::vector<GeometrySource> sources;
         RefractionObject object;
-        object.sources = {&source, 1};
-        object.materials = materials.empty() ? std::span<const Material>(&glass, 1) : materials;
-        object.bounds = mesh.bounds();
+        for (const TriangleMesh& mesh : meshes) {
+            buffers.push_back(MeshBuffers::upload(device(), mesh).value());
+            MeshView source = buffers.back().view();
+            source.materialId = static_cast<std::uint32_t>(sources.size());
+            sources.push_back(source);
+            object.bounds.extend(mesh.bounds().min);
+            object.bounds.extend(mesh.bounds().max);
+        }
+        object.sources = sources;
+        object.materials = materials;
         View view;
         view.size = {8, 8};
         const auto prepared = refraction.prepare(object, view);
@@ -114,12 +121,21 @@ protected:
             {{GL_COMPUTE_SHADER, "#version 450 core\n" + refraction.shaderDefines(2, 3) +
                                      shaderSource("lamina/refraction.glsl").value() + kProgram}});
         refraction.bind(2, 3);
-        std::vector<glm::vec4> found(2 * seen.rays.size());
-        runCompute(program, std::as_bytes(std::span(seen.rays)),
+        std::vector<glm::vec4> found(2 * rays.size());
+        runCompute(program, std::as_bytes(std::span(rays)),
                    std::as_writable_bytes(std::span(found)),
-                   static_cast<std::uint32_t>(seen.rays.size()));
+                   static_cast<std::uint32_t>(rays.size()));
         gl().DeleteProgram(program);
+        return found;
+    }
 
+    Errors measure(const char* name, const Bodies& bodies, std::span<const TriangleMesh> meshes,
+                   RefractionModel model, int maxExactEvents,
+                   std::vector<Material> materials = {}) {
+        const Seen seen = look(bodies, {1.2, 0.9, 3.0}, 20);
+        if (materials.empty())
+            materials = {glass(kIndex)};
+        const auto found = march(seen.rays, meshes, model, materials);
         Errors errors;
         std::size_t considered = 0;
         for (std::size_t i = 0; i < seen.paths.size(); ++i) {
@@ -142,6 +158,12 @@ protected:
         return errors;
     }
 
+    static Material glass(double index) {
+        Material material;
+        material.refractiveIndex = static_cast<float>(index);
+        return material;
+    }
+
     static Bodies one(std::unique_ptr<example::GlassBody> body) {
         Bodies bodies;
         bodies.push_back(std::move(body));
@@ -160,19 +182,19 @@ protected:
 TEST_F(RefractionPathGlTest, TwoSurfacesOfASphereAndASlab) {
     const auto sphere =
         measure("two surfaces, sphere", one(example::makeGlassBall({0, 0, 0}, 1.0, kIndex)),
-                ball({0, 0, 0}, 1.0f), RefractionModel::TwoSurfaces, 1);
+                std::array{ball({0, 0, 0}, 1.0f)}, RefractionModel::TwoSurfaces, 1);
     EXPECT_GE(sphere.shareBelow(2.0), 0.95);
     // A slab, seen through its large faces.
     const auto slab = measure(
         "two surfaces, slab", one(example::makeGlassBox({-1, -1, -0.15}, {1, 1, 0.15}, kIndex)),
-        ref::makeBox({-1, -1, -0.15f}, {1, 1, 0.15f}), RefractionModel::TwoSurfaces, 1);
+        std::array{ref::makeBox({-1, -1, -0.15f}, {1, 1, 0.15f})}, RefractionModel::TwoSurfaces, 1);
     EXPECT_GE(slab.shareBelow(2.0), 0.95);
 }
 
 TEST_F(RefractionPathGlTest, ManySurfacesOfASphere) {
     const auto errors =
         measure("many surfaces, sphere", one(example::makeGlassBall({0, 0, 0}, 1.0, kIndex)),
-                ball({0, 0, 0}, 1.0f), RefractionModel::ManySurfaces, 4);
+                std::array{ball({0, 0, 0}, 1.0f)}, RefractionModel::ManySurfaces, 4);
     EXPECT_GE(errors.shareBelow(3.0), 0.90);
 }
 
@@ -183,14 +205,9 @@ TEST_F(RefractionPathGlTest, ManySurfacesOfAHollowSphere) {
     TriangleMesh hole = ref::flipped(ball({0, 0, 0}, 0.7f));
     for (glm::vec3& normal : hole.normals)
         normal = -normal;
-    TriangleMesh mesh = ball({0, 0, 0}, 1.0f);
-    const auto offset = static_cast<unsigned>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), hole.positions.begin(), hole.positions.end());
-    mesh.normals.insert(mesh.normals.end(), hole.normals.begin(), hole.normals.end());
-    for (const glm::uvec3& triangle : hole.triangles)
-        mesh.triangles.push_back(triangle + offset);
     const auto errors =
-        measure("many surfaces, hollow sphere", bodies, mesh, RefractionModel::ManySurfaces, 4);
+        measure("many surfaces, hollow sphere", bodies, std::array{ball({0, 0, 0}, 1.0f), hole},
+                RefractionModel::ManySurfaces, 4, {glass(kIndex), glass(kIndex)});
     EXPECT_GE(errors.shareBelow(3.0), 0.90);
     EXPECT_GT(errors.reflected, 500u);
 }
@@ -199,9 +216,60 @@ TEST_F(RefractionPathGlTest, ManySurfacesOfACube) {
     const auto errors =
         measure("many surfaces, cube",
                 one(example::makeGlassBox({-0.7, -0.7, -0.7}, {0.7, 0.7, 0.7}, kIndex)),
-                ref::makeCube({0, 0, 0}, 1.4f), RefractionModel::ManySurfaces, 4);
+                std::array{ref::makeCube({0, 0, 0}, 1.4f)}, RefractionModel::ManySurfaces, 4);
     EXPECT_GE(errors.shareBelow(3.0), 0.90);
     EXPECT_GT(errors.reflected, 5000u);
+}
+
+/// Glass of another index, with a colour of its own, inside a ball of glass.
+TEST_F(RefractionPathGlTest, ManySurfacesOfNestedMaterials) {
+    constexpr double kInner = 1.9;
+    Bodies bodies;
+    bodies.push_back(example::makeGlassBall({0, 0, 0}, 1.0, kIndex));
+    bodies.push_back(example::makeGlassBall({0, 0, 0}, 0.55, kInner));
+    const auto errors = measure("many surfaces, nested spheres", bodies,
+                                std::array{ball({0, 0, 0}, 1.0f), ball({0, 0, 0}, 0.55f)},
+                                RefractionModel::ManySurfaces, 4, {glass(kIndex), glass(kInner)});
+    EXPECT_GE(errors.shareBelow(3.0), 0.90);
+}
+
+/// What is seen through a vase: by images of the farthest surfaces, by voxels and two surfaces, by
+/// voxels and all surfaces, each against the exact paths.
+TEST_F(RefractionPathGlTest, VaseFallsInError) {
+    const auto profile = example::vaseProfile();
+    const Bodies bodies = one(example::makeRevolvedGlass(profile, kIndex));
+    const std::array meshes{example::makeRevolvedMesh(profile, 256)};
+    const std::array materials{glass(kIndex)};
+    const glm::dvec3 eye(0.6, 0.7, 3.4);
+    const Seen seen = look(bodies, eye, 20);
+    const auto two = march(seen.rays, meshes, RefractionModel::TwoSurfaces, materials);
+    const auto many = march(seen.rays, meshes, RefractionModel::ManySurfaces, materials);
+    // Bright spots weigh no more than white.
+    const auto shown = [](const glm::dvec3& direction) {
+        return glm::min(example::sky(direction), glm::vec3(1.0f));
+    };
+    double images = 0.0, twoSurfaces = 0.0, manySurfaces = 0.0;
+    for (std::size_t i = 0; i < seen.rays.size(); ++i) {
+        const glm::dvec3 point(seen.rays[i].point), direction(seen.rays[i].direction);
+        const example::GlassHit first{0.0, glm::normalize(glm::dvec3(seen.rays[i].normal)), kIndex};
+        const auto byImages =
+            example::traceByImages(bodies, eye, point, first, glm::normalize(direction));
+        const glm::vec3 exact = shown(seen.paths[i].direction);
+        const auto add = [&](double& sum, const glm::dvec3& found) {
+            const glm::vec3 apart = shown(found) - exact;
+            sum += glm::dot(apart, apart) / 3.0;
+        };
+        add(images, byImages.direction);
+        add(twoSurfaces, glm::dvec3(two[2 * i]));
+        add(manySurfaces, glm::dvec3(many[2 * i]));
+    }
+    const auto rmse = [&](double sum) {
+        return std::sqrt(sum / static_cast<double>(seen.rays.size()));
+    };
+    std::printf("vase, %zu rays: RMSE by images %.4f, two surfaces %.4f, many surfaces %.4f\n",
+                seen.rays.size(), rmse(images), rmse(twoSurfaces), rmse(manySurfaces));
+    EXPECT_LT(rmse(twoSurfaces), rmse(images));
+    EXPECT_LT(rmse(manySurfaces), 0.8 * rmse(twoSurfaces));
 }
 
 } // namespace

@@ -57,6 +57,9 @@
 #define LAMINA_REFRACTION_BRICK 8
 // Steps of a marching ray, in voxels along its dominant axis.
 #define LAMINA_REFRACTION_STEP 0.5
+// Voxels from a surface's plane within which its voxels may be met again: along a diagonal they reach
+// sqrt(3) / 2, and filtered look-ups of them sqrt(3) more.
+#define LAMINA_REFRACTION_SURFACE_DEPTH 2.6
 // Of the weights of a filtered look-up: less is no surface.
 #define LAMINA_REFRACTION_LEAST_WEIGHT 0.01
 // Media that a ray can be in at a time, one within the other.
