@@ -375,13 +375,13 @@ LaminaVertex laminaVertex() {
 }
 
 lamina::Environment loadSky(const HostGl& gl, const lamina::Device& device) {
-    constexpr std::uint32_t kRows = 512;
+    constexpr std::uint32_t kRows = 1024;
     const std::vector<glm::vec3> texels = example::makeSkyTexels(kRows);
     GLuint texture = 0;
     gl.CreateTextures(GL_TEXTURE_2D, 1, &texture);
     gl.TextureStorage2D(texture, 1, GL_RGB32F, 2 * kRows, kRows);
     gl.TextureSubImage2D(texture, 0, 0, 0, 2 * kRows, kRows, GL_RGB, GL_FLOAT, texels.data());
-    auto environment = check(lamina::Environment::create(device, {.size = 512}));
+    auto environment = check(lamina::Environment::create(device, {.size = 1024}));
     check(environment.loadEquirectangular(texture));
     return environment;
 }

@@ -1,5 +1,6 @@
-// Makes a level of an environment from the one above, the only one that the sampler sees, by a round Gaussian around each texel's direction, so
-// that no level shows the squares and the face edges of a box-filtered pyramid.
+// Makes a level of an environment from the one above, which the sampler sees as its level 0, by a round
+// Gaussian around each texel's direction, so that no level shows the squares and the face edges of a
+// box-filtered pyramid.
 //
 // Launch: 8 x 8 x 1 groups over the texels of the six faces; one invocation owns a texel: it sums 7 x 7
 // look-ups of the level above on its tangent plane. No two share one.

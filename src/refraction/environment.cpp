@@ -72,10 +72,11 @@ Result<void> Environment::Impl::load(std::uint32_t source, GLenum target, GLuint
     gl.UseProgram(filter);
     gl.BindTextureUnit(0, cube.id());
     for (std::uint32_t level = 1; level < levels(); ++level) {
-        // Only the level above can be read while this one is written.
+        // Look-ups see the level above as their level 0. Mesa stores nothing to a level outside the
+        // texture's range.
         const auto above = static_cast<GLint>(level) - 1;
         gl.TextureParameteri(cube.id(), GL_TEXTURE_BASE_LEVEL, above);
-        gl.TextureParameteri(cube.id(), GL_TEXTURE_MAX_LEVEL, above);
+        gl.TextureParameteri(cube.id(), GL_TEXTURE_MAX_LEVEL, above + 1);
         dispatch(level);
     }
     gl.TextureParameteri(cube.id(), GL_TEXTURE_BASE_LEVEL, 0);

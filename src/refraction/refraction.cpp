@@ -31,6 +31,7 @@ struct Refraction::Impl {
     std::optional<ThicknessMap> thickness;
     std::optional<OpticalVolume> volume;
     gl::ScreenPass screenPass;
+    NearestSampler nearest;
     GLuint program = 0, copyProgram = 0;
     gl::Buffer constants;
     gl::Texture target, behind;
@@ -43,7 +44,8 @@ struct Refraction::Impl {
     Impl(const Device& host, const RefractionDesc& wanted)
         : device(host.state())
         , desc(wanted)
-        , screenPass(device, "lamina refraction") {}
+        , screenPass(device, "lamina refraction")
+        , nearest(device) {}
 
     [[nodiscard]] Result<void> createObjects(const Device& host);
     [[nodiscard]] Result<void> reserve(gl::Texture& texture, glm::uvec2& size,
@@ -145,7 +147,7 @@ Result<void> Refraction::Impl::copyBehind(const RefractionReceiver& receiver) {
     {
         const gl::TextureUnitGuard textures(*device, 0, 1);
         gl.BindTextureUnit(0, receiver.colorTexture);
-        gl.BindSampler(0, 0);
+        gl.BindSampler(0, nearest.id());
         const GLuint copy = behind.id();
         screenPass.draw(copyProgram, {&copy, 1}, receiver.view.size);
     }
@@ -166,13 +168,13 @@ void Refraction::Impl::bind(GLuint uniformBufferBinding, GLuint textureUnit) con
     const GladGLContext& gl = device->gl;
     const GLuint buffer = constants.id();
     gl.BindBuffersBase(GL_UNIFORM_BUFFER, uniformBufferBinding, 1, &buffer);
-    const auto bindTexture = [&](GLuint unit, GLuint texture) {
+    const auto bindTexture = [&](GLuint unit, GLuint texture, GLuint sampler = 0) {
         gl.BindTextureUnit(textureUnit + unit, texture);
-        gl.BindSampler(textureUnit + unit, 0);
+        gl.BindSampler(textureUnit + unit, sampler);
     };
     bindTexture(LAMINA_REFRACTION_ENVIRONMENT_UNIT, environmentTexture);
     bindTexture(LAMINA_REFRACTION_BEHIND_UNIT, behind.id());
-    bindTexture(LAMINA_REFRACTION_BEHIND_DEPTH_UNIT, behindDepth);
+    bindTexture(LAMINA_REFRACTION_BEHIND_DEPTH_UNIT, behindDepth, nearest.id());
     if (thickness)
         bindTexture(LAMINA_REFRACTION_THICKNESS_UNIT, thickness->texture());
     else
@@ -291,7 +293,7 @@ Result<void> Refraction::apply(const RefractionReceiver& receiver, std::uint32_t
     const GLuint inputs[] = {receiver.depthTexture, receiver.normalTexture, receiver.objectTexture};
     for (GLuint unit = 0; unit < 3; ++unit) {
         gl.BindTextureUnit(unit, inputs[unit]);
-        gl.BindSampler(unit, 0);
+        gl.BindSampler(unit, impl.nearest.id());
     }
     impl.bind(LAMINA_REFRACTION_APPLY_BLOCK_BINDING, LAMINA_REFRACTION_APPLY_TEXTURE_UNIT);
     impl.screenPass.draw(impl.program, {&target, 1}, receiver.view.size);
