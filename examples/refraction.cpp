@@ -120,7 +120,7 @@ lamina::Image drawMaterials(const Studio& studio) {
     materials[4].refractiveIndex = 1.05f; // A gas.
     materials[4].attenuation = AttenuationModel::Power;
     materials[4].bodyColor = {1.0f, 0.42f, 0.08f};
-    materials[4].opaqueLength = 1.6f;
+    materials[4].opaqueLength = 1.0f;
     materials[4].exponent = 1.4f;
     materials[4].reflection = 0.0f;
 
@@ -128,7 +128,7 @@ lamina::Image drawMaterials(const Studio& studio) {
     const StageMesh uploaded = example::uploadWithNormals(studio.gl, mesh);
     const auto count = static_cast<float>(materials.size());
     const Stage stage =
-        example::makeStage(studio.gl, studio.frame(4.0), {0.0, 0.7, 9.6}, {0.0, -0.05, 0.0}, 15.0);
+        example::makeStage(studio.gl, studio.frame(4.0), {0.0, 0.7, 9.6}, {0.0, -0.05, 0.0}, 16.5);
     example::beginStage(studio.gl, stage, studio.environment.texture());
     std::vector<glm::mat4> models;
     for (float i = 0.0f; i < count; ++i) {

@@ -51,7 +51,6 @@
     X(PFNGLNAMEDRENDERBUFFERSTORAGEMULTISAMPLEPROC, NamedRenderbufferStorageMultisample)           \
     X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                                                 \
     X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i)                                                 \
-    X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                                                 \
     X(PFNGLPROGRAMUNIFORM1UIPROC, ProgramUniform1ui)                                               \
     X(PFNGLPROGRAMUNIFORM3FVPROC, ProgramUniform3fv)                                               \
     X(PFNGLPROGRAMUNIFORM4FVPROC, ProgramUniform4fv)                                               \

@@ -1,6 +1,7 @@
 #include <lamina/refraction/refraction.hpp>
 
 #include "gl/binding_guards.hpp"
+#include "gl/fetch_sampler.hpp"
 #include "gl/screen_pass.hpp"
 #include "gl/view_constants.hpp"
 #include "refraction/optical_volume.hpp"
@@ -31,7 +32,7 @@ struct Refraction::Impl {
     std::optional<ThicknessMap> thickness;
     std::optional<OpticalVolume> volume;
     gl::ScreenPass screenPass;
-    NearestSampler nearest;
+    gl::FetchSampler nearest;
     GLuint program = 0, copyProgram = 0;
     gl::Buffer constants;
     gl::Texture target, behind;

@@ -90,16 +90,4 @@ Result<void> checkTexture(const gl::DeviceState& device, GLuint texture, const g
     return {};
 }
 
-NearestSampler::NearestSampler(std::shared_ptr<gl::DeviceState> device)
-    : mDevice(std::move(device)) {
-    const GladGLContext& gl = mDevice->gl;
-    gl.CreateSamplers(1, &mId);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-        gl.SamplerParameteri(mId, filter, GL_NEAREST);
-}
-
-NearestSampler::~NearestSampler() {
-    mDevice->gl.DeleteSamplers(1, &mId);
-}
-
 } // namespace lamina

@@ -19,18 +19,4 @@ void writeSettings(const RefractionSettings& settings, RefractionModel model,
 [[nodiscard]] Result<void> checkTexture(const gl::DeviceState& device, GLuint texture,
                                         const glm::uvec2& size, std::string_view what);
 
-/// Reads a host's texture texel by texel, whatever filter, level and compare modes it is set to.
-class NearestSampler {
-public:
-    explicit NearestSampler(std::shared_ptr<gl::DeviceState> device);
-    ~NearestSampler();
-    NearestSampler(const NearestSampler&) = delete;
-    NearestSampler& operator=(const NearestSampler&) = delete;
-    [[nodiscard]] GLuint id() const { return mId; }
-
-private:
-    std::shared_ptr<gl::DeviceState> mDevice;
-    GLuint mId = 0;
-};
-
 } // namespace lamina
