@@ -165,12 +165,15 @@ protected:
 
 TEST_F(ThicknessGlTest, KnownShapes) {
     const float radii[] = {1.0f, 0.8f, 0.5f, 0.3f};
+    // Turned so that rays cross one arm, the notch and the other arm.
+    const TriangleMesh block =
+        ref::transformed(ref::makeLBlock({0, 0, 0}, 2.0f),
+                         glm::rotate(glm::dmat4(1.0), -0.5 * 3.141592653589793, {0, 0, 1}));
     for (const bool isPerspective : {false, true}) {
         expectThickness("cube", ref::makeCube({0, 0, 0}, 1.5f), 128, {33, 128}, isPerspective);
         expectThickness("sphere", ref::makeIcosphere({0.1f, 0, 0}, 1.0f, 4), 128, {128},
                         isPerspective);
-        expectThickness("L-block", ref::makeLBlock({0, 0, 0}, 2.0f), 128, {1, 32, 128},
-                        isPerspective);
+        expectThickness("L-block", block, 128, {1, 32, 128}, isPerspective);
         expectThickness("nested shells", ref::makeNestedShells({0, 0, 0}, radii, 4), 128, {32, 128},
                         isPerspective);
     }
