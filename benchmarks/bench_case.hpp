@@ -62,6 +62,9 @@ void registerVolumes(const Device& device, const Case& what);
 void registerEpipolar(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
 void registerSlicemaps(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
 void registerRanges(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
+#if defined(LAMINA_HAS_REFRACTION)
+void registerRefraction(const Device& device, const std::shared_ptr<NamedMesh>& mesh);
+#endif
 void registerHostOverlap(const Case& what);
 #if defined(LAMINA_HAS_OPENVDB)
 void registerOpenVdb(const Case& what);

@@ -73,6 +73,9 @@ void registerAll(const Device& device) {
         if (mesh->name == "knot_100k" || mesh->name == "armadillo") {
             bench::registerSlicemaps(device, mesh);
             bench::registerRanges(device, mesh);
+#if defined(LAMINA_HAS_REFRACTION)
+            bench::registerRefraction(device, mesh);
+#endif
         }
     for (const auto& mesh : meshes)
         if (mesh->name == "knot_100k")

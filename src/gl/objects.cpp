@@ -4,6 +4,8 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
+#include <bit>
 #include <initializer_list>
 #include <string>
 
@@ -159,6 +161,7 @@ struct TextureShape {
     GLenum target = GL_TEXTURE_2D;
     glm::uvec3 size{1};
     glm::uvec3 limit{1};
+    std::uint32_t levels = 1;
     std::string description; ///< Of the size.
     std::string limitDescription;
 };
@@ -171,17 +174,21 @@ Result<Texture> createTexture(const std::shared_ptr<DeviceState>& device, GLenum
         return Error{ErrorCode::DeviceLimit, std::string(operation) + ": needs a " +
                                                  shape.description + ", the device's limit is " +
                                                  shape.limitDescription + "; use a smaller grid"};
-    const std::uint64_t bytes = std::uint64_t{bytesPerTexel} * size.x * size.y * size.z;
+    std::uint64_t bytes = 0;
+    for (std::uint32_t level = 0; level < shape.levels; ++level)
+        bytes += std::uint64_t{bytesPerTexel} * std::max(size.x >> level, 1u) *
+                 std::max(size.y >> level, 1u) * size.z;
     if (auto fits = checkBudget(*device, bytes, operation); !fits)
         return fits.error();
     Texture texture = Texture::create(device, label, shape.target);
     const auto width = static_cast<GLsizei>(size.x);
     const auto height = static_cast<GLsizei>(size.y);
     const auto stored = allocate(*device, bytes, operation, [&] {
-        if (shape.target == GL_TEXTURE_2D)
-            device->gl.TextureStorage2D(texture.id(), 1, internalFormat, width, height);
+        const auto levels = static_cast<GLsizei>(shape.levels);
+        if (shape.target == GL_TEXTURE_2D || shape.target == GL_TEXTURE_CUBE_MAP)
+            device->gl.TextureStorage2D(texture.id(), levels, internalFormat, width, height);
         else
-            device->gl.TextureStorage3D(texture.id(), 1, internalFormat, width, height,
+            device->gl.TextureStorage3D(texture.id(), levels, internalFormat, width, height,
                                         static_cast<GLsizei>(size.z));
     });
     if (!stored)
@@ -212,9 +219,53 @@ Result<Texture> createTexture2d(const std::shared_ptr<DeviceState>& device, GLen
                          {GL_TEXTURE_2D,
                           {width, height, 1},
                           {limit, limit, 1},
+                          1,
                           "texture of " + product({width, height}),
                           product({limit, limit})},
                          operation, label);
+}
+
+namespace {
+
+Result<Texture> createPyramid(const std::shared_ptr<DeviceState>& device, GLenum target,
+                              GLenum internalFormat, std::uint32_t bytesPerTexel,
+                              const glm::uvec3& size, std::string_view operation,
+                              std::string_view label) {
+    const std::uint32_t limit = device->limits.maxTextureSize;
+    auto texture =
+        createTexture(device, internalFormat, bytesPerTexel,
+                      {target,
+                       size,
+                       {limit, limit, size.z},
+                       static_cast<std::uint32_t>(std::bit_width(std::max(size.x, size.y))),
+                       (target == GL_TEXTURE_CUBE_MAP ? "cube map of " : "texture of ") +
+                           product({size.x, size.y}),
+                       product({limit, limit})},
+                      operation, label);
+    if (texture) {
+        device->gl.TextureParameteri(texture->id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+        device->gl.TextureParameteri(texture->id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    }
+    return texture;
+}
+
+} // namespace
+
+Result<Texture> createMippedTexture2d(const std::shared_ptr<DeviceState>& device,
+                                      GLenum internalFormat, std::uint32_t bytesPerTexel,
+                                      std::uint32_t width, std::uint32_t height,
+                                      std::string_view operation, std::string_view label) {
+    return createPyramid(device, GL_TEXTURE_2D, internalFormat, bytesPerTexel, {width, height, 1},
+                         operation, label);
+}
+
+Result<Texture> createMippedCubeMap(const std::shared_ptr<DeviceState>& device,
+                                    GLenum internalFormat, std::uint32_t bytesPerTexel,
+                                    std::uint32_t size, std::string_view operation,
+                                    std::string_view label) {
+    constexpr std::uint32_t kFaces = 6;
+    return createPyramid(device, GL_TEXTURE_CUBE_MAP, internalFormat, bytesPerTexel,
+                         {size, size, kFaces}, operation, label);
 }
 
 Result<Texture> createTextureArray(const std::shared_ptr<DeviceState>& device,
@@ -227,6 +278,7 @@ Result<Texture> createTextureArray(const std::shared_ptr<DeviceState>& device,
                          {GL_TEXTURE_2D_ARRAY,
                           {width, height, layers},
                           {limit, limit, layerLimit},
+                          1,
                           "texture of " + product({width, height, layers}) + " layers",
                           product({limit, limit, layerLimit})},
                          operation, label);
@@ -243,6 +295,7 @@ Result<Texture> createTexture3d(const std::shared_ptr<DeviceState>& device, GLen
                          {GL_TEXTURE_3D,
                           {width, height, depth},
                           glm::uvec3(most),
+                          1,
                           "3D texture of " + product({width, height, depth}),
                           std::to_string(most) + " each way"},
                          operation, label);

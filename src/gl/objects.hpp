@@ -123,6 +123,19 @@ createTexture2d(const std::shared_ptr<DeviceState>& device, GLenum internalForma
                 std::uint32_t bytesPerTexel, std::uint32_t width, std::uint32_t height,
                 std::string_view operation, std::string_view label);
 
+/// A 2D texture with all levels, trilinear filtering and clamped edges.
+/// Errors: DeviceLimit, OutOfMemory.
+[[nodiscard]] LAMINA_API Result<Texture>
+createMippedTexture2d(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
+                      std::uint32_t bytesPerTexel, std::uint32_t width, std::uint32_t height,
+                      std::string_view operation, std::string_view label);
+
+/// The same as a cube map of `size` texels a side.
+[[nodiscard]] LAMINA_API Result<Texture>
+createMippedCubeMap(const std::shared_ptr<DeviceState>& device, GLenum internalFormat,
+                    std::uint32_t bytesPerTexel, std::uint32_t size, std::string_view operation,
+                    std::string_view label);
+
 /// A one-level 2D array texture with nearest filtering. bytesPerTexel: of `internalFormat`.
 /// Errors: DeviceLimit, OutOfMemory.
 [[nodiscard]] LAMINA_API Result<Texture>

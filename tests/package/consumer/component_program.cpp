@@ -16,6 +16,9 @@
 #include <lamina/parity/sprite_set.hpp>
 #include <lamina/parity/sprite_transform.hpp>
 #endif
+#ifdef HAS_REFRACTION
+#include <lamina/refraction/refraction.hpp>
+#endif
 #ifdef HAS_SHADOW_VOLUMES
 #include <lamina/shadow_volumes/shadow_volumes.hpp>
 #endif
@@ -77,6 +80,21 @@ bool transmittanceIsMade() {
 #endif
 }
 
+bool thicknessIsRefused() {
+#ifdef HAS_REFRACTION
+    const auto context = lamina::headless::Context::create();
+    if (!expect(context.hasValue(), "a headless context"))
+        return false;
+    const auto device = lamina::Device::fromCurrentContext(
+        [&](const char* name) { return context->getProcAddress(name); });
+    auto refraction = lamina::Refraction::create(*device);
+    return expect(refraction && !refraction->thicknessMap()->downloadReport(),
+                  "a thickness map that asks for prepare()");
+#else
+    return true;
+#endif
+}
+
 bool spriteIsRefused() {
 #ifdef HAS_PARITY
     const auto context = lamina::headless::Context::create();
@@ -116,7 +134,7 @@ bool shadowsAreMade() {
 int main() {
     static_assert(LAMINA_VERSION_MAJOR >= 0);
     return contextIsMade() && meshIsRead() && gridIsWritten() && transmittanceIsMade() &&
-                   spriteIsRefused() && shadowsAreMade()
+                   spriteIsRefused() && shadowsAreMade() && thicknessIsRefused()
                ? 0
                : 1;
 }

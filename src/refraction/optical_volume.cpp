@@ -1,0 +1,155 @@
+#include "refraction/optical_volume.hpp"
+
+#include "gl/binding_guards.hpp"
+#include "gl/state_guard.hpp"
+#include "refraction/refraction_constants.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace lamina {
+namespace {
+
+constexpr std::string_view kOperation = "refraction volume";
+constexpr GLuint kGroup = 8;
+/// Voxels of empty space around the object: filtered look-ups at its surface reach one.
+constexpr double kMargin = 2.0;
+/// lamina/shared/volume_block.glsl
+constexpr GLuint kVolumeUnits = 6;
+
+glm::vec4 opticsOf(const Material& material) {
+    return {material.refractiveIndex, material.transmission * glm::vec3(material.color)};
+}
+
+/// What all materials share, if they do.
+std::optional<glm::vec4> sharedOpticsOf(std::span<const Material> materials) {
+    if (materials.empty())
+        return opticsOf(Material{});
+    for (const Material& material : materials)
+        if (opticsOf(material) != opticsOf(materials.front()))
+            return {};
+    return opticsOf(materials.front());
+}
+
+bool isFinite(const Box3& box) {
+    return std::isfinite(glm::dot(box.min, glm::dvec3(1.0)) + glm::dot(box.max, glm::dvec3(1.0)));
+}
+
+} // namespace
+
+Result<OpticalVolume> OpticalVolume::create(const Device& device, std::uint32_t voxels,
+                                            float slabOverlap) {
+    auto voxelizer = VolumeVoxelizer::create(device, {.slabOverlap = slabOverlap});
+    if (!voxelizer)
+        return voxelizer.error();
+    VolumeLayout layout;
+    layout.count = VolumeFormat::None;
+    layout.normal = VolumeFormat::RGBA16F;
+    auto normals = VolumeGrid::create(device, layout);
+    if (!normals)
+        return normals.error();
+    layout.optics = VolumeFormat::RGBA16F;
+    layout.color = VolumeFormat::RGBA16F;
+    auto optics = VolumeGrid::create(device, layout);
+    if (!optics)
+        return optics.error();
+    return OpticalVolume(device.state(), std::move(*voxelizer), std::move(*normals),
+                         std::move(*optics), voxels);
+}
+
+Result<void> OpticalVolume::reserve() {
+    const auto cube = [&](gl::Texture& texture, GLenum format, std::uint32_t bytes,
+                          std::uint32_t size, bool isFiltered) -> Result<void> {
+        if (texture)
+            return {};
+        auto made = gl::createTexture3d(mDevice, format, bytes, size, size, size, kOperation,
+                                        "lamina refraction volume");
+        if (!made)
+            return made.error();
+        texture = std::move(*made);
+        if (isFiltered)
+            for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+                mDevice->gl.TextureParameteri(texture.id(), filter, GL_LINEAR);
+        return {};
+    };
+    if (auto made = cube(mNormals, GL_RGBA16F, 8, mVoxels, true); !made)
+        return made;
+    const std::uint32_t bricks = (mVoxels + LAMINA_REFRACTION_BRICK - 1) / LAMINA_REFRACTION_BRICK;
+    if (auto made = cube(mBricks, GL_R8, 1, bricks, false); !made)
+        return made;
+    return mSharedOptics ? Result<void>{} : cube(mOptics, GL_RGBA16F, 8, mVoxels, true);
+}
+
+Result<void> OpticalVolume::merge(const VolumeGrid& along, int axis) {
+    const auto program =
+        gl::findOrBuildProgram(*mDevice, {"lamina refraction volume",
+                                          {{GL_COMPUTE_SHADER, "refraction/volume_merge.comp"}},
+                                          {{"LAMINA_MERGE_OPTICS", mSharedOptics ? "0" : "1"}}});
+    if (!program)
+        return program.error();
+    const GladGLContext& gl = mDevice->gl;
+    const gl::ComputeStateGuard compute(*mDevice, 1, 0);
+    const gl::TextureUnitGuard textures(*mDevice, 0, kVolumeUnits);
+    const gl::ImageUnitGuard images(*mDevice, 3);
+    along.bind(0, 0);
+    gl.BindImageTexture(0, mNormals.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_RGBA16F);
+    gl.BindImageTexture(1, mOptics.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_RGBA16F);
+    gl.BindImageTexture(2, mBricks.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R8);
+    gl.UseProgram(*program);
+    gl.ProgramUniform1i(*program, 0, axis);
+    gl.ProgramUniform1i(*program, 1, axis == 0 ? 1 : 0);
+    const GLuint groups = (mVoxels + kGroup - 1) / kGroup;
+    gl.DispatchCompute(groups, groups, mVoxels);
+    gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                     GL_TEXTURE_UPDATE_BARRIER_BIT);
+    return {};
+}
+
+Result<VolumeStats> OpticalVolume::build(std::span<const GeometrySource> sources,
+                                         std::span<const Material> materials, const Box3& bounds) {
+    if (bounds.isEmpty() || !isFinite(bounds))
+        return Error{ErrorCode::InvalidArgument,
+                     "refraction: expected finite bounds that hold the object, found none"};
+    mSharedOptics = sharedOpticsOf(materials);
+    if (auto reserved = reserve(); !reserved)
+        return reserved.error();
+    const glm::dvec3 size = bounds.size();
+    const double extent = std::max({size.x, size.y, size.z, 1e-30});
+    const double half = 0.5 * extent * mVoxels / (mVoxels - 2.0 * kMargin);
+    const Box3 cube{bounds.center() - half, bounds.center() + half};
+    mPlace = {glm::vec3(cube.min), static_cast<float>(mVoxels / (2.0 * half))};
+    mDevice->gl.ClearTexImage(mBricks.id(), 0, GL_RED, GL_FLOAT, nullptr);
+    VolumeGrid& along = mSharedOptics ? mNormalsAlong : mOpticsAlong;
+    VolumeStats stats;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto grid = GridTransform::box(cube, glm::uvec3(mVoxels), static_cast<Axis>(axis));
+        if (!grid)
+            return grid.error();
+        const auto voxelized = mVoxelizer.voxelize(sources, materials, *grid, along);
+        if (!voxelized)
+            return voxelized.error();
+        stats.sources = voxelized->sources;
+        stats.passes += voxelized->passes;
+        stats.meshTriangles = voxelized->meshTriangles;
+        stats.scratchBytes = voxelized->scratchBytes;
+        if (auto merged = merge(along, axis); !merged)
+            return merged.error();
+    }
+    stats.volumeBytes = gpuBytes();
+    return stats;
+}
+
+void OpticalVolume::bind(GLuint unit) const {
+    const GLuint textures[] = {mNormals.id(), mOptics.id(), mBricks.id()};
+    for (GLuint i = 0; i < 3; ++i) {
+        mDevice->gl.BindTextureUnit(unit + i, textures[i]);
+        mDevice->gl.BindSampler(unit + i, 0);
+    }
+}
+
+std::uint64_t OpticalVolume::gpuBytes() const {
+    return mNormals.bytes() + mOptics.bytes() + mBricks.bytes() + mNormalsAlong.gpuBytes() +
+           mOpticsAlong.gpuBytes();
+}
+
+} // namespace lamina

@@ -1,0 +1,93 @@
+#include "refraction/refraction_settings.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace lamina {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kRightAngle = 1.5707964f;
+constexpr std::uint32_t kMostEvents = 64;
+
+struct Range {
+    const char* what;
+    float value;
+    float low, high; ///< Inclusive; infinite: any finite value.
+};
+
+std::string size(const glm::uvec2& pixels) {
+    return std::to_string(pixels.x) + " x " + std::to_string(pixels.y);
+}
+
+} // namespace
+
+Result<void> checkSettings(const RefractionSettings& settings) {
+    constexpr float kLeast = std::numeric_limits<float>::min();
+    const Range ranges[] = {
+        {"refractive index", settings.refractiveIndex, 1.0f, 4.0f},
+        {"reflection", settings.reflection, 0.0f, 1.0f},
+        {"bend length", settings.bendLength, 0.0f, kInfinity},
+        {"absorption", settings.absorption.x, 0.0f, kInfinity},
+        {"absorption", settings.absorption.y, 0.0f, kInfinity},
+        {"absorption", settings.absorption.z, 0.0f, kInfinity},
+        {"body colour", settings.bodyColor.x, 0.0f, kInfinity},
+        {"body colour", settings.bodyColor.y, 0.0f, kInfinity},
+        {"body colour", settings.bodyColor.z, 0.0f, kInfinity},
+        {"opaque length", settings.opaqueLength, kLeast, kInfinity},
+        {"exponent", settings.exponent, kLeast, kInfinity},
+        {"surface blur", settings.surfaceBlur, 0.0f, kInfinity},
+        {"body blur", settings.bodyBlur, 0.0f, kInfinity},
+        {"distance of what lies behind", settings.behindDistance, 0.0f, kInfinity},
+        {"angle of the same surface", settings.sameSurfaceAngle, kLeast, kRightAngle},
+    };
+    for (const Range& range : ranges)
+        if (!(range.value >= range.low && range.value <= range.high) ||
+            !std::isfinite(range.value)) {
+            const std::string upTo =
+                std::isfinite(range.high) ? " to " + std::to_string(range.high) : " or more";
+            return Error{ErrorCode::InvalidArgument, "refraction: expected a " +
+                                                         std::string(range.what) + " of " +
+                                                         std::to_string(range.low) + upTo +
+                                                         ", found " + std::to_string(range.value)};
+        }
+    if (settings.maxEvents < 1 || settings.maxEvents > kMostEvents)
+        return Error{ErrorCode::InvalidArgument, "refraction: expected 1 to 64 events, found " +
+                                                     std::to_string(settings.maxEvents)};
+    return {};
+}
+
+void writeSettings(const RefractionSettings& settings, RefractionModel model,
+                   shared::LaminaRefractionConstants& block) {
+    const bool isPower = settings.attenuation == AttenuationModel::Power;
+    block.surface = {settings.refractiveIndex, settings.reflection, settings.bendLength,
+                     settings.behindDistance};
+    block.body = {isPower ? settings.bodyColor : settings.absorption, settings.exponent};
+    block.blur = {settings.opaqueLength, settings.surfaceBlur, settings.bodyBlur,
+                  std::cos(settings.sameSurfaceAngle)};
+    block.modes.x = isPower ? LAMINA_REFRACTION_POWER : 0u;
+    block.modes.w = model == RefractionModel::TwoSurfaces ? 1u : settings.maxEvents;
+}
+
+Result<void> checkTexture(const gl::DeviceState& device, GLuint texture, const glm::uvec2& pixels,
+                          std::string_view what) {
+    const GladGLContext& gl = device.gl;
+    const std::string expected = "refraction: expected a " + std::string(what) +
+                                 " texture, 2D, of " + size(pixels) + " pixels, found ";
+    GLint target = 0;
+    if (gl.IsTexture(texture))
+        gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
+    if (target != GL_TEXTURE_2D)
+        return Error{ErrorCode::InvalidArgument,
+                     expected + "name " + std::to_string(texture) + ", which is none"};
+    GLint width = 0, height = 0;
+    gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &width);
+    gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &height);
+    const glm::uvec2 found(width, height);
+    if (found != pixels)
+        return Error{ErrorCode::InvalidArgument, expected + size(found)};
+    return {};
+}
+
+} // namespace lamina
