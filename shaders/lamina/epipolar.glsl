@@ -109,13 +109,8 @@ bool laminaEpipolarLit(int vsv, vec3 world) {
     return !laminaEpipolarVoxelShadowed(vsv, ivec3(floor(laminaEpipolarPlace(vsv, world))));
 }
 
-// The lit share in [0,1] of a world point, interpolated between the centres of its four neighbours in
-// theta and phi. alpha is never interpolated: along it visibility changes once, at the occluder.
-float laminaEpipolarLitInterpolated(int vsv, vec3 world) {
-    bool isLit;
-    if (laminaEpipoleRule(vsv, world, isLit))
-        return float(isLit);
-    vec3 place = laminaEpipolarPlace(vsv, world);
+// laminaEpipolarLitInterpolated() at biased coordinates, alpha and phi within the volume.
+float laminaEpipolarLitInterpolatedAt(int vsv, vec3 place) {
     vec2 low = floor(place.yz - 0.5);
     vec2 weight = place.yz - 0.5 - low;
     int bitsPerTexel = int(laminaEpipolarSpaces[vsv].tile.z);
@@ -136,6 +131,15 @@ float laminaEpipolarLitInterpolated(int vsv, vec3 world) {
     float both = weight.x * weight.y;
     vec4 weights = vec4(1.0 - weight.x - weight.y + both, weight.x - both, weight.y - both, both);
     return dot(mix(weights, vec4(0.0), greaterThan(shadowed, uvec4(0u))), vec4(1.0));
+}
+
+// The lit share in [0,1] of a world point, interpolated between the centres of its four neighbours in
+// theta and phi. alpha is never interpolated: along it visibility changes once, at the occluder.
+float laminaEpipolarLitInterpolated(int vsv, vec3 world) {
+    bool isLit;
+    if (laminaEpipoleRule(vsv, world, isLit))
+        return float(isLit);
+    return laminaEpipolarLitInterpolatedAt(vsv, laminaEpipolarPlace(vsv, world));
 }
 
 // Shadowed phi samples of the eye ray of texel `at` before phi coordinate `end` in [0, phi samples], the

@@ -13,9 +13,10 @@
 //   4. store the row and clear it for the next; barrier. Every texel is written, so the target needs no
 //      clear.
 // Occluders before the volume's alpha range shadow all of the ray, those behind it nothing.
-// permute LAMINA_EPIPOLAR_MAP = LAMINA_EPIPOLAR_MAP_OWN LAMINA_EPIPOLAR_MAP_2D LAMINA_EPIPOLAR_MAP_ARRAY LAMINA_EPIPOLAR_MAP_CUBE
+// permute LAMINA_EPIPOLAR_MAP = LAMINA_EPIPOLAR_MAP_OWN LAMINA_EPIPOLAR_MAP_2D LAMINA_EPIPOLAR_MAP_ARRAY LAMINA_EPIPOLAR_MAP_CUBE LAMINA_EPIPOLAR_MAP_HEMISPHERE
 // permute LAMINA_EPIPOLAR_ALPHA_CAPACITY = 128 512 2048
 #include <lamina/shared/epipolar_block.glsl>
+#include <voxelize/hemisphere.glsl>
 
 layout(local_size_x = 128) in;
 
@@ -120,6 +121,20 @@ bool findSurface(LaminaEpipolarMap map, Ray ray, float lightDistance, out vec3 s
     if (depth == map.depth.x)
         return false;
     surface = ray.origin + mat3(map.fromTexel) * center * (map.depth.y / (map.depth.z + depth));
+    return true;
+}
+#elif LAMINA_EPIPOLAR_MAP == LAMINA_EPIPOLAR_MAP_HEMISPHERE
+bool findSurface(LaminaEpipolarMap map, Ray ray, float lightDistance, out vec3 surface) {
+    vec3 direction = mat3(map.toTexel) * ray.direction;
+    if (direction.z <= 0.0)
+        return false;
+    vec2 side = map.window.zw;
+    vec2 texel = clamp(floor((laminaHemisphereToSquare(direction) * 0.5 + 0.5) * side), vec2(0.0), side - 1.0);
+    float distance = texelFetch(laminaEpipolarDepth, ivec3(texel + map.window.xy, map.layers.x), 0).r;
+    if (distance == map.depth.x)
+        return false;
+    vec3 center = laminaSquareToHemisphere((texel + 0.5) * (2.0 / side) - 1.0);
+    surface = ray.origin + mat3(map.fromTexel) * center * distance;
     return true;
 }
 #else

@@ -13,13 +13,11 @@
 namespace lamina {
 namespace {
 
-/// How many tiles of `tile` texels stand side by side for `count` of them: near a square, within
-/// the device's limit as far as one exists.
+/// How many tiles of `tile` texels stand side by side for `count` of them: as few as the device's
+/// limit allows. Rows of a tile are then close together in memory, which the scan walks.
 glm::uvec2 arrange(std::uint32_t count, const glm::uvec2& tile, std::uint32_t maxTexels) {
-    const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(count))));
-    const glm::uvec2 most = glm::max(glm::uvec2(maxTexels) / tile, glm::uvec2(1));
-    const std::uint32_t needed = (count + most.y - 1) / most.y;
-    const std::uint32_t columns = std::clamp(side, std::min(needed, most.x), most.x);
+    const std::uint32_t mostRows = std::max(maxTexels / tile.y, 1u);
+    const std::uint32_t columns = (count + mostRows - 1) / mostRows;
     return {columns, (count + columns - 1) / columns};
 }
 

@@ -68,6 +68,9 @@ private:
                                           shared::LaminaEpipolarMap& block) const;
     [[nodiscard]] Result<void> makeCube(const glm::uvec3& texture,
                                         shared::LaminaEpipolarMap& block) const;
+    [[nodiscard]] Result<void> makeHemisphere(const glm::uvec3& texture,
+                                              shared::LaminaEpipolarMap& block) const;
+    [[nodiscard]] Result<glm::uvec2> usedSize(const glm::uvec3& texture) const;
 
     const gl::DeviceState& mDevice;
     const LightDepthMap& mMap;
@@ -81,9 +84,9 @@ Result<glm::uvec3> HostMap::textureSize() const {
         return invalid("expected the name of a GL texture, found " + std::to_string(mMap.texture));
     GLint target = 0;
     gl.GetTextureParameteriv(mMap.texture, GL_TEXTURE_TARGET, &target);
-    const GLint expected = mMap.kind == DepthMapKind::Texture2D      ? GL_TEXTURE_2D
-                           : mMap.kind == DepthMapKind::TextureArray ? GL_TEXTURE_2D_ARRAY
-                                                                     : GL_TEXTURE_CUBE_MAP;
+    const GLint expected = mMap.kind == DepthMapKind::Texture2D     ? GL_TEXTURE_2D
+                           : mMap.kind == DepthMapKind::TextureCube ? GL_TEXTURE_CUBE_MAP
+                                                                    : GL_TEXTURE_2D_ARRAY;
     if (target != expected)
         return invalid("expected a texture of the kind that the map names, found target " +
                        std::to_string(target) + " instead of " + std::to_string(expected));
@@ -104,17 +107,27 @@ Result<glm::uvec3> HostMap::textureSize() const {
     return glm::uvec3(size);
 }
 
-Result<void> HostMap::makePlanar(const glm::uvec3& texture,
-                                 shared::LaminaEpipolarMap& block) const {
+Result<glm::uvec2> HostMap::usedSize(const glm::uvec3& texture) const {
     const glm::uvec2 whole(texture);
     const glm::uvec2 size = mMap.size == glm::uvec2(0) ? whole : mMap.size;
     if (size.x == 0 || size.y == 0 || mMap.firstTexel.x > whole.x || mMap.firstTexel.y > whole.y ||
         size.x > whole.x - mMap.firstTexel.x || size.y > whole.y - mMap.firstTexel.y)
         return invalid("expected a part inside the texture of " + text(whole) + " texels, found " +
                        text(size) + " from " + text(mMap.firstTexel));
-    if (mMap.kind == DepthMapKind::TextureArray && mMap.layer >= texture.z)
+    const bool isArray = mMap.kind == DepthMapKind::TextureArray ||
+                         mMap.kind == DepthMapKind::HemisphereArray;
+    if (isArray && mMap.layer >= texture.z)
         return invalid("expected a layer below " + std::to_string(texture.z) + ", found " +
                        std::to_string(mMap.layer));
+    return size;
+}
+
+Result<void> HostMap::makePlanar(const glm::uvec3& texture,
+                                 shared::LaminaEpipolarMap& block) const {
+    const auto used = usedSize(texture);
+    if (!used)
+        return used.error();
+    const glm::uvec2 size = *used;
     if (!isFinite(mMap.worldToClip) || !projectsFrom(mMap.worldToClip, mTransform))
         return invalid("expected a finite worldToClip whose lines of projection meet in the light "
                        "(directional: run along it), found another; give the matrix and the light "
@@ -160,14 +173,42 @@ Result<void> HostMap::makeCube(const glm::uvec3& texture, shared::LaminaEpipolar
     return {};
 }
 
+Result<void> HostMap::makeHemisphere(const glm::uvec3& texture,
+                                     shared::LaminaEpipolarMap& block) const {
+    const auto size = usedSize(texture);
+    if (!size)
+        return size.error();
+    const glm::dmat3& rotation = mMap.worldToHemisphere;
+    const glm::dmat3 product = glm::transpose(rotation) * rotation;
+    constexpr double kTolerance = 1e-5;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            if (!(std::abs(product[column][row] - (row == column ? 1.0 : 0.0)) < kTolerance))
+                return invalid("expected a rotation as worldToHemisphere, found another matrix");
+    if (mTransform.isDirectional())
+        return invalid("expected a 2D map for a directional light, found a hemisphere");
+    block.window = glm::vec4(glm::vec2(mMap.firstTexel), glm::vec2(*size));
+    block.depth = {mMap.emptyDepth, 0.0f, 0.0f, 0.0f};
+    block.layers = {static_cast<int>(mMap.layer), 0, 0, 0};
+    const glm::dmat3 fromFrame = rotation * glm::dmat3(frameToWorld(mTransform));
+    block.toTexel = glm::mat4(glm::dmat4(fromFrame));
+    block.fromTexel = glm::mat4(glm::dmat4(glm::transpose(fromFrame)));
+    return {};
+}
+
 Result<shared::LaminaEpipolarMap> HostMap::make() const {
     const auto texture = textureSize();
     if (!texture)
         return texture.error();
     shared::LaminaEpipolarMap block{};
     setLight(block, mTransform, static_cast<std::uint32_t>(mIndex));
-    const auto made = mMap.kind == DepthMapKind::TextureCube ? makeCube(*texture, block)
-                                                             : makePlanar(*texture, block);
+    Result<void> made;
+    if (mMap.kind == DepthMapKind::TextureCube)
+        made = makeCube(*texture, block);
+    else if (mMap.kind == DepthMapKind::HemisphereArray)
+        made = makeHemisphere(*texture, block);
+    else
+        made = makePlanar(*texture, block);
     if (!made)
         return made.error();
     return block;

@@ -38,9 +38,11 @@ int mapOf(DepthMapKind kind) {
     case DepthMapKind::TextureArray:
         return LAMINA_EPIPOLAR_MAP_ARRAY;
     case DepthMapKind::TextureCube:
+        return LAMINA_EPIPOLAR_MAP_CUBE;
+    case DepthMapKind::HemisphereArray:
         break;
     }
-    return LAMINA_EPIPOLAR_MAP_CUBE;
+    return LAMINA_EPIPOLAR_MAP_HEMISPHERE;
 }
 
 Result<void> checkAlpha(std::span<const EpipolarTransform> transforms) {

@@ -11,6 +11,7 @@
 #define LAMINA_EPIPOLAR_MAP_2D 1
 #define LAMINA_EPIPOLAR_MAP_ARRAY 2
 #define LAMINA_EPIPOLAR_MAP_CUBE 3
+#define LAMINA_EPIPOLAR_MAP_HEMISPHERE 4
 
 // Faces of our own depth maps, by the axis they look along in the light's frame (u, v, light to eye).
 #define LAMINA_EPIPOLAR_FACE_FRONT 0
@@ -73,7 +74,7 @@ struct LaminaEpipolarMap {
     // Own: layers of faces 4 and 5. Both: index of the LaminaEpipolarSpace, unused.
     ivec4 layersAndSpace;
     // Host: from positions relative to the eye, in the frame (u, v, axis), to texel x, y, depth; and back.
-    // Cube: rotation from that frame to the cube map's axes; and back.
+    // Cube and hemisphere: rotation from that frame to the map's axes; and back.
     mat4 toTexel;
     mat4 fromTexel;
 };
