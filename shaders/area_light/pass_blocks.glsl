@@ -1,0 +1,38 @@
+// What the gather and composite passes read of the engine's frame.
+#include <lamina/shared/area_light_block.glsl>
+#include <lamina/view.glsl>
+
+layout(std140, binding = LAMINA_AREA_LIGHT_PASS_VIEW_BINDING) uniform LaminaViewBlock {
+    LaminaViewConstants laminaView;
+};
+layout(std140, binding = LAMINA_AREA_LIGHT_PASS_GATHER_BINDING) uniform LaminaGatherBlock {
+    LaminaGatherConstants laminaGather;
+};
+
+layout(binding = LAMINA_AREA_LIGHT_PASS_DEPTH_UNIT) uniform sampler2D laminaDepths;
+layout(binding = LAMINA_AREA_LIGHT_PASS_NORMAL_UNIT) uniform sampler2D laminaNormals;
+
+bool laminaHas(uint flag) {
+    return (laminaGather.pixels.w & flag) != 0u;
+}
+
+// World point that a pixel shows; the sky is a point at the sky's distance.
+vec3 laminaSeenPoint(ivec2 pixel, out bool isSky) {
+    float depth = texelFetch(laminaDepths, pixel, 0).r;
+    isSky = laminaIsBackground(laminaView, depth);
+    vec2 center = vec2(pixel) + 0.5;
+    if (!isSky)
+        return laminaWorldPoint(laminaView, center, depth);
+    // Half way in depth lies a finite point of every projection.
+    vec3 direction = -laminaTowardsViewer(laminaView, laminaWorldPoint(laminaView, center, 0.5));
+    return laminaView.viewpoint.xyz + laminaGather.numbers.x * direction;
+}
+
+// World normal of a pixel; of any length where the host's is none.
+vec3 laminaSeenNormal(ivec2 pixel) {
+    vec3 normal = texelFetch(laminaNormals, pixel, 0).xyz;
+    if (laminaHas(LAMINA_AREA_LIGHT_UNSIGNED_NORMALS))
+        normal = 2.0 * normal - 1.0;
+    float square = dot(normal, normal);
+    return square > 0.0 ? normal * inversesqrt(square) : normal;
+}
