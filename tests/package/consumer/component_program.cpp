@@ -12,6 +12,9 @@
 #ifdef HAS_TRANSMITTANCE
 #include <lamina/transmittance/transmittance.hpp>
 #endif
+#ifdef HAS_AREA_LIGHT
+#include <lamina/area_light/area_light.hpp>
+#endif
 #ifdef HAS_PARITY
 #include <lamina/parity/sprite_set.hpp>
 #include <lamina/parity/sprite_transform.hpp>
@@ -129,12 +132,21 @@ bool shadowsAreMade() {
 #endif
 }
 
+bool lightIsSampled() {
+#ifdef HAS_AREA_LIGHT
+    const auto lights = lamina::sampleVirtualLights(lamina::RectangleLight{}, 64);
+    return expect(lights && lights->size() == 64, "virtual lights");
+#else
+    return true;
+#endif
+}
+
 } // namespace
 
 int main() {
     static_assert(LAMINA_VERSION_MAJOR >= 0);
     return contextIsMade() && meshIsRead() && gridIsWritten() && transmittanceIsMade() &&
-                   spriteIsRefused() && shadowsAreMade() && thicknessIsRefused()
+                   spriteIsRefused() && shadowsAreMade() && thicknessIsRefused() && lightIsSampled()
                ? 0
                : 1;
 }
