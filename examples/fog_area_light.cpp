@@ -1,0 +1,257 @@
+// A large television in fog, behind a fence, columns and a tree: imperfect voxelized shadow volumes
+// of [WD13], and the pictures that its figures show.
+//
+//   fog_area_light FOLDER [WIDTH [LIGHTS [FIGURE]]]
+//
+// FIGURE: shadows (without and with), hard (a point and the area), sizes, interpolation,
+// resolution, gather (full, interleaved, quarter and their differences), or all.
+
+#include "support/check.hpp"
+#include "support/fog_stage.hpp"
+#include "support/shapes.hpp"
+#include "support/tree.hpp"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace {
+
+using example::check;
+using lamina::Image;
+using lamina::TriangleMesh;
+
+const glm::dvec3 kEye(0.4, 1.5, 6.2);
+
+void addBox(TriangleMesh& mesh, const glm::vec3& low, const glm::vec3& high) {
+    constexpr int kSides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                  {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    const auto corner = [&](int i) {
+        return glm::vec3((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
+                         (i & 4) != 0 ? high.z : low.z);
+    };
+    for (const auto& side : kSides) {
+        example::addTriangle(mesh, corner(side[0]), corner(side[1]), corner(side[2]));
+        example::addTriangle(mesh, corner(side[0]), corner(side[2]), corner(side[3]));
+    }
+}
+
+TriangleMesh makeFence() {
+    TriangleMesh mesh;
+    for (int bar = 0; bar < 11; ++bar) {
+        const float x = -0.9f + 0.18f * static_cast<float>(bar);
+        addBox(mesh, {x, 0.0f, -0.72f}, {x + 0.05f, 1.15f, -0.68f});
+    }
+    for (const float y : {0.25f, 0.9f})
+        addBox(mesh, {-1.0f, y, -0.71f}, {1.0f, y + 0.05f, -0.69f});
+    return mesh;
+}
+
+TriangleMesh makeColumns() {
+    TriangleMesh mesh;
+    const std::vector<glm::vec2> profile{{0.0f, 0.0f},   {0.34f, 0.01f}, {0.34f, 0.12f},
+                                         {0.22f, 0.2f},  {0.18f, 2.3f},  {0.3f, 2.4f},
+                                         {0.32f, 2.55f}, {0.0f, 2.56f}};
+    for (const float x : {-2.3f, 1.7f})
+        example::addRevolved(mesh, profile, 40,
+                             [x](const glm::vec3& p) { return p + glm::vec3(x, 0.0f, -0.3f); });
+    return mesh;
+}
+
+TriangleMesh scaled(TriangleMesh mesh, float scale, const glm::vec3& place) {
+    for (glm::vec3& position : mesh.positions)
+        position = scale * position + place;
+    return mesh;
+}
+
+/// A frame of a film: a sunset over a sea.
+std::vector<glm::vec3> makeFilm(const glm::uvec2& size) {
+    std::vector<glm::vec3> texels;
+    for (std::uint32_t y = 0; y < size.y; ++y)
+        for (std::uint32_t x = 0; x < size.x; ++x) {
+            const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(size.x);
+            const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(size.y);
+            const float sun =
+                std::exp(-60.0f * ((u - 0.7f) * (u - 0.7f) + (v - 0.45f) * (v - 0.45f)));
+            const glm::vec3 sky =
+                glm::mix(glm::vec3(1.0f, 0.35f, 0.08f), glm::vec3(0.12f, 0.25f, 0.75f),
+                         std::min(1.0f, v * 1.2f));
+            const glm::vec3 sea(0.02f, 0.18f + 0.1f * std::sin(40.0f * v), 0.3f);
+            texels.push_back((v < 0.35f ? sea : sky) + sun * glm::vec3(5.0f, 3.0f, 1.2f));
+        }
+    return texels;
+}
+
+class Figures {
+public:
+    Figures(std::filesystem::path folder, std::uint32_t width, std::uint32_t lights)
+        : mFolder(std::move(folder))
+        , mWidth(width)
+        , mLights(lights) {
+        TriangleMesh ground;
+        addBox(ground, {-12.0f, -0.1f, -12.0f}, {12.0f, 0.0f, 12.0f});
+        const example::Tree tree = example::makeTree(5);
+        const glm::vec3 place(-0.9f, 0.0f, 0.7f);
+        mStage.add(ground, glm::vec3(0.35f, 0.33f, 0.3f));
+        mStage.add(makeFence(), glm::vec3(0.5f, 0.42f, 0.3f));
+        mStage.add(makeColumns(), glm::vec3(0.6f));
+        mStage.add(scaled(tree.wood, 0.28f, place), glm::vec3(0.3f, 0.2f, 0.12f));
+        mStage.add(scaled(tree.leaves, 0.28f, place), glm::vec3(0.2f, 0.4f, 0.08f));
+        const glm::uvec2 filmSize(256, 128);
+        mFilm = mStage.makeTexture(makeFilm(filmSize), filmSize);
+    }
+
+    void shadows() {
+        draw(mWidth, 1.0);
+        write("area_light", mStage.light(desc(), light(1.0), kFog));
+        draw(mWidth / 2, 1.0);
+        write("without_and_with", example::montage({mStage.light(desc(), light(1.0), kFog, false),
+                                                    mStage.light(desc(), light(1.0), kFog)},
+                                                   2));
+    }
+    void hard() {
+        draw(mWidth / 2, 1.0);
+        // As strong as the whole television seen from the front.
+        lamina::AreaLightDesc one = desc();
+        one.voxels = {512, 512, 512};
+        one.mapTexels = 1024;
+        const lamina::PointLight point{light(1.0).corner +
+                                           0.5 * (light(1.0).edgeU + light(1.0).edgeV),
+                                       glm::vec3(40.0f, 34.0f, 36.0f)};
+        write("hard_and_soft",
+              example::montage(
+                  {mStage.light(one, point, kFog), mStage.light(desc(), light(1.0), kFog)}, 2));
+    }
+    void sizes() {
+        std::vector<Image> images;
+        for (const double size : {0.1, 0.4, 0.8, 1.2}) {
+            draw(mWidth / 2, size);
+            images.push_back(mStage.light(desc(), light(size), kFog));
+        }
+        write("sizes", example::montage(images, 2));
+    }
+    void interpolation() {
+        draw(mWidth / 2, 1.0);
+        lamina::AreaLightDesc few = desc();
+        few.virtualLights = 8;
+        few.voxels = glm::uvec3(64);
+        few.maps = lamina::ShadowMaps::Rendered;
+        lamina::AreaLightDesc plain = few;
+        plain.interpolate = false;
+        write("interpolation",
+              example::montage(
+                  {mStage.light(plain, light(1.0), kFog), mStage.light(few, light(1.0), kFog)}, 2));
+    }
+    void resolution() {
+        draw(mWidth / 2, 1.0);
+        std::vector<Image> images;
+        for (const std::uint32_t voxels : {16u, 32u, 64u, 128u}) {
+            lamina::AreaLightDesc other = desc();
+            other.voxels = glm::uvec3(voxels);
+            other.mapTexels = voxels;
+            images.push_back(mStage.light(other, light(1.0), kFog));
+        }
+        write("resolution", example::montage(images, 2));
+    }
+    void gather() {
+        draw(mWidth / 2, 1.0);
+        std::vector<Image> images;
+        for (const lamina::GatherMode mode :
+             {lamina::GatherMode::Full, lamina::GatherMode::Interleaved,
+              lamina::GatherMode::Quarter}) {
+            lamina::AreaLightDesc other = desc();
+            other.gather = mode;
+            images.push_back(mStage.light(other, light(1.0), kFog));
+        }
+        for (std::size_t i = 0; i < 3; ++i)
+            images.push_back(example::difference(images[0], images[i], 4));
+        write("gather", example::montage(images, 3));
+    }
+
+private:
+    static constexpr lamina::Medium kFog{0.13f, glm::vec3(0.95f), 0.25f};
+
+    [[nodiscard]] lamina::AreaLightDesc desc() const {
+        lamina::AreaLightDesc made;
+        made.virtualLights = mLights;
+        return made;
+    }
+    /// The television, of a share of its full size.
+    [[nodiscard]] lamina::RectangleLight light(double size) const {
+        lamina::RectangleLight made;
+        const glm::dvec3 middle(0.0, 1.55, -3.4);
+        made.edgeU = {3.6 * size, 0.0, 0.0};
+        made.edgeV = {0.0, 1.9 * size, 0.0};
+        made.corner = middle - 0.5 * (made.edgeU + made.edgeV);
+        // As much light from any size.
+        made.emission.radiance = glm::vec3(static_cast<float>(16.0 / (size * size)));
+        made.emission.texture = mFilm;
+        return made;
+    }
+    void draw(std::uint32_t width, double size) {
+        const lamina::RectangleLight rectangle = light(size);
+        const glm::dvec3 corners[4] = {rectangle.corner, rectangle.corner + rectangle.edgeU,
+                                       rectangle.corner + rectangle.edgeU + rectangle.edgeV,
+                                       rectangle.corner + rectangle.edgeV};
+        const glm::vec3 rounded[4] = {corners[0], corners[1], corners[2], corners[3]};
+        mStage.removeGlows();
+        mStage.addGlow(rounded, glm::vec3(2.5f), mFilm);
+        const glm::uvec2 pixels(width, width * 5 / 8);
+        const glm::dmat4 projection = glm::perspective(
+            glm::radians(42.0), static_cast<double>(pixels.x) / pixels.y, 0.2, 30.0);
+        mStage.draw(projection *
+                        glm::lookAt(kEye, glm::dvec3(0.0, 1.15, -1.0), glm::dvec3(0, 1, 0)),
+                    pixels);
+    }
+    void write(const std::string& name, const Image& image) const {
+        const std::filesystem::path file = mFolder / (name + ".png");
+        check(lamina::writePng(file, image));
+        std::printf("%s\n", file.string().c_str());
+    }
+
+    std::filesystem::path mFolder;
+    std::uint32_t mWidth;
+    std::uint32_t mLights;
+    example::FogStage mStage;
+    std::uint32_t mFilm = 0;
+};
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2) {
+        std::fprintf(stderr, "usage: fog_area_light FOLDER [WIDTH [LIGHTS [FIGURE]]]\n");
+        return 2;
+    }
+    const auto number = [&](int i, unsigned otherwise) {
+        return argc > i ? static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10))
+                        : otherwise;
+    };
+    const std::uint32_t width = number(2, 640);
+    const std::uint32_t lights = number(3, 128);
+    const std::string figure = argc > 4 ? argv[4] : "shadows";
+    if (width < 16 || lights == 0) {
+        std::fprintf(stderr,
+                     "fog_area_light: expected a width of 16 or more and 1 light or more\n");
+        return 2;
+    }
+    std::filesystem::create_directories(argv[1]);
+    Figures figures(argv[1], width, lights);
+    const std::pair<const char*, void (Figures::*)()> all[] = {
+        {"shadows", &Figures::shadows},       {"hard", &Figures::hard},
+        {"sizes", &Figures::sizes},           {"interpolation", &Figures::interpolation},
+        {"resolution", &Figures::resolution}, {"gather", &Figures::gather}};
+    bool isKnown = false;
+    for (const auto& [name, run] : all)
+        if (figure == name || figure == "all") {
+            (figures.*run)();
+            isKnown = true;
+        }
+    if (!isKnown)
+        std::fprintf(stderr, "fog_area_light: no figure %s\n", figure.c_str());
+    return isKnown ? 0 : 2;
+}
