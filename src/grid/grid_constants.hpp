@@ -34,7 +34,8 @@ static_assert(offsetof(shared::LaminaDrawConstants, depthRange) == 96 &&
               "std140");
 
 /// hasLocalRanges: sets LAMINA_GRID_LOCAL.
-[[nodiscard]] LAMINA_API GridBlock makeGridBlock(const GridTransform& transform, bool hasLocalRanges = false);
+[[nodiscard]] LAMINA_API GridBlock makeGridBlock(const GridTransform& transform,
+                                                 bool hasLocalRanges = false);
 
 /// LAMINA_GRID_* flags of a grid.
 [[nodiscard]] std::uint32_t gridFlags(const GridTransform& transform);

@@ -19,8 +19,9 @@ struct LightFaces {
 /// One grid fitted to the bounds as the light sees them, or up to six around a point light in the
 /// midst of them. margin: columns by which the faces of a cube overlap, for filters.
 /// Errors: InvalidArgument (light, bounds, size), DeviceLimit (more than maxFaces).
-[[nodiscard]] LAMINA_API Result<LightFaces> fitLightFaces(const TransmittanceLight& light, const Box3& bounds,
-                                               const glm::uvec3& size, std::uint32_t maxFaces,
-                                               double margin);
+[[nodiscard]] LAMINA_API Result<LightFaces> fitLightFaces(const TransmittanceLight& light,
+                                                          const Box3& bounds,
+                                                          const glm::uvec3& size,
+                                                          std::uint32_t maxFaces, double margin);
 
 } // namespace lamina

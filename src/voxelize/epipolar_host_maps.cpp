@@ -114,8 +114,8 @@ Result<glm::uvec2> HostMap::usedSize(const glm::uvec3& texture) const {
         size.x > whole.x - mMap.firstTexel.x || size.y > whole.y - mMap.firstTexel.y)
         return invalid("expected a part inside the texture of " + text(whole) + " texels, found " +
                        text(size) + " from " + text(mMap.firstTexel));
-    const bool isArray = mMap.kind == DepthMapKind::TextureArray ||
-                         mMap.kind == DepthMapKind::HemisphereArray;
+    const bool isArray =
+        mMap.kind == DepthMapKind::TextureArray || mMap.kind == DepthMapKind::HemisphereArray;
     if (isArray && mMap.layer >= texture.z)
         return invalid("expected a layer below " + std::to_string(texture.z) + ", found " +
                        std::to_string(mMap.layer));
