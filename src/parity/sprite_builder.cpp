@@ -4,28 +4,37 @@
 #include "gl/state_guard.hpp"
 #include "parity/depth_sprite_data.hpp"
 #include "parity/parity_constants.hpp"
-#include "voxelize/column_draw.hpp"
+#include "voxelize/slicemap_draw.hpp"
 
 #include <lamina/parity/sprite_builder.hpp>
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace lamina {
 namespace {
 
-ColumnStage stage(const char* pass) {
-    return {"lamina depth sprite",
-            "parity/sprite.frag",
+SlicemapStage stage(const char* pass) {
+    return {"parity/sprite.frag",
             {{"LAMINA_COVERAGE", "LAMINA_COVERAGE_SAMPLED"}, {"LAMINA_PARITY_PASS", pass}}};
 }
 
-ColumnStage countStage() {
+/// A pass that wants every crossing of a column's centre line, at any depth.
+SlicemapPass allDepths(const SlicemapSources& sources) {
+    SlicemapPass pass;
+    pass.sources = &sources;
+    pass.nearDepth = std::numeric_limits<double>::lowest();
+    pass.farDepth = std::numeric_limits<double>::max();
+    return pass;
+}
+
+SlicemapStage countStage() {
     return stage("LAMINA_PARITY_PASS_COUNT");
 }
-ColumnStage layerStage(SpriteMethod method) {
+SlicemapStage layerStage(SpriteMethod method) {
     return stage(method == SpriteMethod::Peeling ? "LAMINA_PARITY_PASS_PEEL"
                                                  : "LAMINA_PARITY_PASS_GATHER");
 }
@@ -38,7 +47,7 @@ std::uint32_t evenLayers(std::uint32_t layers) {
 
 struct SpriteBuilder::Impl {
     using Sources = std::span<const GeometrySource>;
-    using Prepared = std::vector<ColumnDraw::Source>;
+    using Passes = std::span<const SlicemapPass>;
 
     explicit Impl(std::shared_ptr<gl::DeviceState> state)
         : device(std::move(state))
@@ -51,11 +60,9 @@ struct SpriteBuilder::Impl {
     [[nodiscard]] Result<void> reserveCounts(const GridTransform& transform);
     void beginDraws(const GridTransform& transform) const;
     void clearCounts() const;
-    void draw(Sources sources, const Prepared& prepared, std::uint32_t pass,
-              std::uint32_t passCount, gl::RasterStateGuard& guard);
+    void draw(Passes passes, std::uint32_t pass, gl::RasterStateGuard& guard);
     void uploadPeelBlocks(std::uint32_t layers);
-    void peel(Sources sources, const Prepared& prepared, const detail::DepthSpriteData& sprite,
-              gl::RasterStateGuard& guard);
+    void peel(Passes passes, const detail::DepthSpriteData& sprite, gl::RasterStateGuard& guard);
     void resolve(GLuint program, const gl::Buffer& report) const;
     [[nodiscard]] Result<SpriteReport> count(Sources sources, const GridTransform& transform);
     [[nodiscard]] Result<SpriteStats> build(Sources sources, const GridTransform& transform,
@@ -63,7 +70,7 @@ struct SpriteBuilder::Impl {
                                             SpriteMethod method);
 
     std::shared_ptr<gl::DeviceState> device;
-    ColumnDraw columns;
+    SlicemapDraw columns;
     gl::Framebuffer framebuffer;
     gl::Buffer peelBlocks;
     std::size_t peelStride = 0;
@@ -128,12 +135,8 @@ void SpriteBuilder::Impl::clearCounts() const {
     device->gl.ClearTexImage(counts.id(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
 }
 
-void SpriteBuilder::Impl::draw(Sources sources, const Prepared& prepared, std::uint32_t pass,
-                               std::uint32_t passCount, gl::RasterStateGuard& guard) {
-    DrawContext context;
-    context.pass = pass;
-    context.passCount = passCount;
-    columns.draw(sources, prepared, context, guard);
+void SpriteBuilder::Impl::draw(Passes passes, std::uint32_t pass, gl::RasterStateGuard& guard) {
+    columns.draw(passes, pass, guard, [] {});
     device->gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
@@ -149,8 +152,8 @@ void SpriteBuilder::Impl::uploadPeelBlocks(std::uint32_t layers) {
                                GL_STREAM_DRAW);
 }
 
-void SpriteBuilder::Impl::peel(Sources sources, const Prepared& prepared,
-                               const detail::DepthSpriteData& sprite, gl::RasterStateGuard& guard) {
+void SpriteBuilder::Impl::peel(Passes passes, const detail::DepthSpriteData& sprite,
+                               gl::RasterStateGuard& guard) {
     const GladGLContext& gl = device->gl;
     const gl::BlendStateGuard blend(*device, 1, gl::Blending::Minimum);
     uploadPeelBlocks(sprite.layers);
@@ -165,7 +168,7 @@ void SpriteBuilder::Impl::peel(Sources sources, const Prepared& prepared,
         constexpr GLsizeiptr kBytes = sizeof(glm::uvec4);
         gl.BindBuffersRange(GL_UNIFORM_BUFFER, LAMINA_PARITY_PASS_BLOCK_BINDING, 1, &buffer,
                             &offset, &kBytes);
-        draw(sources, prepared, layer, sprite.layers + 1, guard);
+        draw(passes, layer, guard);
     }
     gl.NamedFramebufferTexture(framebuffer.id(), GL_COLOR_ATTACHMENT0, 0, 0);
 }
@@ -199,13 +202,14 @@ Result<SpriteReport> SpriteBuilder::Impl::count(Sources sources, const GridTrans
     if (auto reserved = reserveCounts(transform); !reserved)
         return reserved.error();
     const gl::DebugGroup group(*device, "lamina: count crossings");
-    columns.upload(*prepared, transform);
+    const SlicemapPass pass = allDepths(*prepared);
+    columns.upload({&pass, 1}, transform);
     const gl::ImageUnitGuard images(*device, 2);
     {
         gl::RasterStateGuard guard(*device, 2);
         beginDraws(transform);
         clearCounts();
-        draw(sources, *prepared, 0, 1, guard);
+        draw({&pass, 1}, 0, guard);
     }
     resolve(*program, report);
     return detail::downloadReport(*device, report);
@@ -240,7 +244,11 @@ Result<SpriteStats> SpriteBuilder::Impl::build(Sources sources, const GridTransf
     const gl::DebugGroup group(*device, peels ? "lamina: depth sprite (peeling)"
                                               : "lamina: depth sprite (single pass)");
     const GladGLContext& gl = device->gl;
-    columns.upload(*prepared, transform);
+    // Peeling: a pass for each layer, then one that counts.
+    std::vector<SlicemapPass> passes(peels ? layers : 1, allDepths(*prepared));
+    if (peels)
+        passes.push_back(allDepths(*counting));
+    columns.upload(passes, transform);
     const gl::ImageUnitGuard images(*device, 2);
     gl.BindImageTexture(LAMINA_PARITY_LAYER_IMAGE, sprite.texture.id(), 0, GL_TRUE, 0,
                         GL_READ_WRITE, GL_R32F);
@@ -248,12 +256,9 @@ Result<SpriteStats> SpriteBuilder::Impl::build(Sources sources, const GridTransf
         gl::RasterStateGuard guard(*device, 2);
         beginDraws(transform);
         if (peels)
-            peel(sources, *prepared, sprite, guard);
+            peel(passes, sprite, guard);
         clearCounts();
-        if (peels)
-            draw(sources, *counting, layers, layers + 1, guard);
-        else
-            draw(sources, *prepared, 0, 1, guard);
+        draw(passes, static_cast<std::uint32_t>(passes.size() - 1), guard);
     }
     resolve(*program, sprite.report);
     return SpriteStats{peels ? layers + 1 : 1, sprite.texture.bytes() + sprite.report.bytes(),
@@ -272,7 +277,7 @@ Result<SpriteBuilder> SpriteBuilder::create(const Device& device) {
     if (!report)
         return report.error();
     impl->report = std::move(*report);
-    for (const ColumnStage& stage : {countStage(), layerStage(SpriteMethod::SinglePass)})
+    for (const SlicemapStage& stage : {countStage(), layerStage(SpriteMethod::SinglePass)})
         if (auto program = impl->columns.meshProgram(stage); !program)
             return program.error();
     if (auto program = impl->resolveProgram(true, false); !program)
