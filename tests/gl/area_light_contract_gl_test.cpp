@@ -14,10 +14,8 @@
 namespace lamina {
 namespace {
 
-using test::differences;
 using test::FogScene;
 using test::OddGlState;
-using test::readGlState;
 using testing::HasSubstr;
 
 RectangleLight lamp(std::uint32_t texture = 0) {
@@ -57,13 +55,6 @@ protected:
         mBuffers.reset();
         mScene.reset();
         GlTest::TearDown();
-    }
-    template<class Call>
-    void expectUnchanged(const char* what, Call&& call) {
-        const auto before = readGlState(gl());
-        call();
-        EXPECT_THAT(differences(before, readGlState(gl())), testing::IsEmpty()) << what;
-        EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
     }
     GeometrySource source() const { return mBuffers->view(); }
     Result<AreaLightStats> prepare(AreaLight& effect, const LightSource& light) {

@@ -2,6 +2,8 @@
 
 #include "gl/support/gl_state.hpp"
 #include "gl/support/gl_test.hpp"
+#include "gl/support/grids.hpp"
+#include "gl/support/sources.hpp"
 
 #include <lamina/gl/shaders.hpp>
 #include <lamina/grid/attribute_grid.hpp>
@@ -19,12 +21,9 @@ namespace lamina {
 namespace {
 
 namespace ref = reference;
+using test::testGrid;
 using testing::AllOf;
 using testing::HasSubstr;
-
-GridTransform testGrid(std::uint32_t slices = 64) {
-    return GridTransform::box({{-1, -1, -1}, {1, 1, 1}}, {48, 40, slices}).value();
-}
 
 /// Colour by position and normals off the faces'.
 TriangleMesh painted(TriangleMesh mesh) {
@@ -35,7 +34,7 @@ TriangleMesh painted(TriangleMesh mesh) {
     return mesh;
 }
 
-const TriangleMesh kKnot = painted(ref::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 64, 12));
+const TriangleMesh kKnot = painted(test::makeKnot());
 
 bool operator==(const AttributeGrid& a, const AttributeGrid& b) {
     return a.colors == b.colors && a.normals == b.normals && a.hits == b.hits &&
@@ -44,22 +43,6 @@ bool operator==(const AttributeGrid& a, const AttributeGrid& b) {
 
 class AttributesContractGlTest : public test::GlTest {
 protected:
-    void TearDown() override {
-        gl().DeleteBuffers(static_cast<GLsizei>(mBuffers.size()), mBuffers.data());
-        mBuffers.clear();
-        GlTest::TearDown();
-    }
-
-    template<class Value>
-    GLuint hostBuffer(std::span<const Value> values) {
-        GLuint id = 0;
-        gl().CreateBuffers(1, &id);
-        gl().NamedBufferData(id, static_cast<GLsizeiptr>(values.size_bytes()), values.data(),
-                             GL_STATIC_DRAW);
-        mBuffers.push_back(id);
-        return id;
-    }
-
     VoxelGrid voxels(std::span<const GeometrySource> sources, const GridTransform& transform) {
         auto voxelizer = Voxelizer::create(device(), {.coverage = Coverage::Conservative}).value();
         auto grid = VoxelGrid::create(device()).value();
@@ -80,8 +63,6 @@ protected:
                              std::span<const Material> materials = {}) {
         return attributes({&source, 1}, materials);
     }
-
-    std::vector<GLuint> mBuffers;
 };
 
 TEST_F(AttributesContractGlTest, SourcesOfEveryLayoutGiveTheSame) {
@@ -105,7 +86,7 @@ TEST_F(AttributesContractGlTest, SourcesOfEveryLayoutGiveTheSame) {
             indices.push_back(static_cast<std::uint16_t>(v));
         }
     MeshView interleaved;
-    interleaved.vertexBuffer = hostBuffer(std::span<const Vertex>(soup));
+    interleaved.vertexBuffer = hostBuffer(std::as_bytes(std::span(soup)));
     interleaved.vertexStrideBytes = sizeof(Vertex);
     interleaved.positionOffsetBytes = sizeof(Vertex) + offsetof(Vertex, position);
     interleaved.vertexCount = static_cast<std::uint32_t>(soup.size() - 1);
@@ -119,7 +100,7 @@ TEST_F(AttributesContractGlTest, SourcesOfEveryLayoutGiveTheSame) {
     indices.insert(indices.begin(), std::uint16_t{0});
     ASSERT_EQ(indices.size() % 2, 1u);
     MeshView captured = plain;
-    captured.indexBuffer = hostBuffer(std::span<const std::uint16_t>(indices));
+    captured.indexBuffer = hostBuffer(std::as_bytes(std::span(indices)));
     captured.indexType = IndexType::UInt16;
     captured.indexOffsetBytes = 2;
     EXPECT_TRUE(attributes(captured) == right);
@@ -174,7 +155,7 @@ TEST_F(AttributesContractGlTest, ByteColoursMaterialsAndDefaults) {
     // Bytes: 200/255 times 1, 0.5, 0.25.
     const std::vector<std::uint32_t> bytes(plane.positions.size(), 0x80c8c8c8u);
     view.materialId = 0;
-    view.colors = {hostBuffer(std::span<const std::uint32_t>(bytes)), 0, 4};
+    view.colors = {hostBuffer(std::as_bytes(std::span(bytes))), 0, 4};
     view.colorFormat = VertexColorFormat::UNorm8;
     found = attributes(view, materials);
     EXPECT_THAT(found.colors, testing::Each(glm::u8vec4(200, 100, 50, 128)));
@@ -377,12 +358,6 @@ TEST_F(AttributesContractGlTest, EveryCallRestoresTheState) {
         return attributes(buffers.view());
     }();
     const test::OddGlState odd(gl());
-    const auto expectUnchanged = [&](const char* what, auto&& call) {
-        const auto before = test::readGlState(gl());
-        call();
-        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty()) << what;
-        EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
-    };
     auto buffers = MeshBuffers::upload(device(), kKnot).value();
     MeshView captured = buffers.view();
     DrawSource drawn;

@@ -2,6 +2,7 @@
 
 #include "gl/program_cache.hpp"
 #include "gl/support/gl_test.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <lamina/gl/shaders.hpp>
 #include <lamina/voxelize/voxelizer.hpp>
@@ -11,7 +12,6 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
-#include <fstream>
 
 namespace lamina {
 namespace {
@@ -150,14 +150,13 @@ TEST_F(DeviceGlTest, ProgramsAreBuiltOnce) {
 }
 
 TEST_F(DeviceGlTest, AnOverrideDirectoryReplacesShaders) {
-    const auto root = std::filesystem::temp_directory_path() /
-                      ("lamina-override-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)));
+    const test::TemporaryFolder root;
     std::filesystem::create_directories(root / "voxelize");
-    std::ofstream(root / "voxelize" / "slicemap.frag") << "void main() { broken }\n";
+    test::writeBytes(root / "voxelize/slicemap.frag", "void main() { broken }\n");
     std::vector<std::string> messages;
     {
         auto overridden = Device::fromCurrentContext(
-            load, {.shaderOverrideDirectory = root, .message = [&](const Message& message) {
+            load, {.shaderOverrideDirectory = root.path(), .message = [&](const Message& message) {
                        messages.emplace_back(message.text);
                    }});
         ASSERT_TRUE(overridden);
@@ -166,7 +165,7 @@ TEST_F(DeviceGlTest, AnOverrideDirectoryReplacesShaders) {
         EXPECT_EQ(voxelizer.error().code, ErrorCode::ShaderError);
         EXPECT_THAT(voxelizer.error().text, HasSubstr("voxelize/slicemap.frag:1"));
         EXPECT_THAT(takeHighSeverityMessages(), testing::Not(testing::IsEmpty())); // the compiler's
-        std::filesystem::remove_all(root);
+        std::filesystem::remove_all(root.path());
         EXPECT_TRUE(Voxelizer::create(*overridden));
     }
     EXPECT_THAT(messages, testing::Contains(HasSubstr("slicemap serves sampled coverage")));

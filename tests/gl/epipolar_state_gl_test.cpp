@@ -34,13 +34,6 @@ EpipolarTransform boxVolume(const glm::uvec3& size, bool isSun = false) {
 
 class EpipolarStateGlTest : public test::GlTest {
 protected:
-    template<class Call>
-    void expectUnchanged(const char* what, Call&& call) {
-        const auto before = readGlState(gl());
-        call();
-        EXPECT_THAT(differences(before, readGlState(gl())), testing::IsEmpty()) << what;
-        EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
-    }
     EpipolarBits boxBits(std::span<const EpipolarTransform> transforms) {
         auto buffers = MeshBuffers::upload(device(), kBox).value();
         auto voxelizer = EpipolarVoxelizer::create(device(), {.depthMapTexels = 64}).value();

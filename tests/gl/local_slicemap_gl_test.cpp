@@ -1,6 +1,7 @@
 // Slicemaps with a near/far range per column, against the double-precision reference.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/grids.hpp"
 #include "gl/support/test_meshes.hpp"
 #include "gl/support/voxelize.hpp"
 
@@ -24,26 +25,9 @@ namespace lamina {
 namespace {
 
 namespace ref = reference;
+using test::cameraGrid;
 using test::NamedMesh;
-
-GridTransform cameraGrid(Projection projection, const glm::uvec3& size,
-                         const SliceDistribution& distribution = SliceDistribution::linear()) {
-    const glm::dmat4 view = glm::lookAt(glm::dvec3(1.1, 1.7, 2.3), glm::dvec3(0.1, 0.0, -0.1),
-                                        glm::dvec3(0.1, 1.0, 0.0));
-    GridCamera camera = GridCamera::perspective(view, 0.9, double(size.x) / size.y, 1.2, 4.9);
-    if (projection == Projection::Orthographic) {
-        camera.projection = projection;
-        camera.left = -1.4;
-        camera.right = 1.5;
-        camera.bottom = -1.3;
-        camera.top = 1.4;
-    }
-    return GridTransform::camera(camera, size, distribution).value();
-}
-
-GridTransform boxGrid(const glm::uvec3& size) {
-    return GridTransform::box({{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}}, size).value();
-}
+using test::shapesGrid;
 
 ref::ColumnRule ruleOf(Coverage coverage) {
     if (coverage == Coverage::Conservative)
@@ -138,7 +122,7 @@ protected:
 };
 
 TEST_F(LocalSlicemapGlTest, AllShapesAgreeWithTheReference) {
-    const GridTransform transform = boxGrid({101, 83, 128});
+    const GridTransform transform = shapesGrid({101, 83, 128});
     for (const NamedMesh& shape : test::makeShapes())
         for (const Coverage coverage : kCoverages)
             expectLocal(voxelize(coverage, shape.mesh, transform), shape.mesh, coverage,
@@ -146,30 +130,16 @@ TEST_F(LocalSlicemapGlTest, AllShapesAgreeWithTheReference) {
 }
 
 TEST_F(LocalSlicemapGlTest, CameraGridsAndDistributionsAgreeWithTheReference) {
-    std::vector<float> boundaries(101);
-    for (std::size_t k = 0; k < boundaries.size(); ++k)
-        boundaries[k] = std::pow(static_cast<float>(k) / 100.0f, 1.7f);
-    const SliceDistribution distributions[] = {SliceDistribution::linear(),
-                                               SliceDistribution::logarithmic(),
-                                               SliceDistribution::custom(boundaries)};
     const TriangleMesh mesh =
         ref::merged(ref::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 64, 12),
                     ref::makeTriangleSoup({{-1, -1, -1}, {1, 1, 1}}, 200, 0.6f, 5));
-    for (const Projection projection : {Projection::Orthographic, Projection::Perspective})
-        for (const SliceDistribution& distribution : distributions)
-            for (const Coverage coverage : kCoverages) {
-                const GridTransform transform = cameraGrid(projection, {90, 71, 100}, distribution);
-                expectLocal(voxelize(coverage, mesh, transform), mesh, coverage,
-                            transform.describe());
-            }
+    for (const GridTransform& transform : test::makeCameraGrids({90, 71, 100}))
+        for (const Coverage coverage : kCoverages)
+            expectLocal(voxelize(coverage, mesh, transform), mesh, coverage, transform.describe());
 }
 
 TEST_F(LocalSlicemapGlTest, TrianglesAroundTheEyeAgreeWithTheReference) {
-    const glm::dmat4 view =
-        glm::lookAt(glm::dvec3(0.05, 0.1, 0.2), glm::dvec3(0.7, 0.2, -0.4), glm::dvec3(0, 1, 0));
-    const GridTransform transform =
-        GridTransform::camera(GridCamera::perspective(view, 1.3, 1.0, 0.1, 3.0), {80, 80, 300})
-            .value();
+    const GridTransform transform = test::eyeGrid({80, 80, 300});
     const TriangleMesh mesh = ref::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 64, 12);
     for (const Coverage coverage : kCoverages)
         expectLocal(voxelize(coverage, mesh, transform), mesh, coverage,
@@ -179,7 +149,7 @@ TEST_F(LocalSlicemapGlTest, TrianglesAroundTheEyeAgreeWithTheReference) {
 TEST_F(LocalSlicemapGlTest, SliceCountsAroundWordAndGroupEdgesInEveryStore) {
     const TriangleMesh mesh = ref::makeTorus({0.1f, 0.03f, 0}, 0.6f, 0.25f, 40, 20);
     for (const std::uint32_t slices : {1u, 33u, 128u, 129u, 300u, 1100u}) {
-        const GridTransform transform = boxGrid({40, 24, slices});
+        const GridTransform transform = shapesGrid({40, 24, slices});
         for (const Coverage coverage : kCoverages) {
             const BitGrid single = voxelize(coverage, mesh, transform);
             expectLocal(single, mesh, coverage, transform.describe());
@@ -226,7 +196,7 @@ TEST_F(LocalSlicemapGlTest, GeometryOutsideTheGridsDepthsDoesNotStretchRanges) {
 TEST_F(LocalSlicemapGlTest, NoSourcesGiveEmptyColumns) {
     auto voxelizer = Voxelizer::create(device(), {Backend::LocalSlicemap}).value();
     auto grid = VoxelGrid::create(device()).value();
-    const auto stats = voxelizer->voxelize({}, boxGrid({16, 16, 200}), grid).value();
+    const auto stats = voxelizer->voxelize({}, shapesGrid({16, 16, 200}), grid).value();
     EXPECT_EQ(stats.passes, 3u);
     const BitGrid found = grid.download().value();
     EXPECT_EQ(found.count(), 0u);
@@ -385,7 +355,7 @@ TEST_F(LocalSlicemapGlTest, RealMeshesAgreeWithTheReference) {
 
 TEST_F(LocalSlicemapGlTest, ADrawSourceGivesTheVoxelsOfItsMesh) {
     const TriangleMesh mesh = ref::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 64, 12);
-    const GridTransform transform = boxGrid({60, 50, 300});
+    const GridTransform transform = shapesGrid({60, 50, 300});
     std::vector<glm::vec4> corners;
     for (const auto& triangle : mesh.triangles)
         for (int corner = 0; corner < 3; ++corner)

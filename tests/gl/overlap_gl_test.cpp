@@ -53,10 +53,9 @@ protected:
 };
 
 TEST_F(OverlapGlTest, ShapesAgreeWithTheReferenceAlongEveryAxis) {
-    const Box3 box{{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}};
     for (const Axis axis : {Axis::X, Axis::Y, Axis::Z})
         for (const NamedMesh& shape : test::makeShapes())
-            expectOverlap(shape.mesh, GridTransform::box(box, {101, 83, 128}, axis).value(),
+            expectOverlap(shape.mesh, test::shapesGrid({101, 83, 128}, axis),
                           shape.name + " along axis " + std::to_string(static_cast<int>(axis)));
 }
 

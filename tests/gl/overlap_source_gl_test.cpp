@@ -1,48 +1,28 @@
 // Every kind of source reaches the overlap backend; errors leave all unchanged.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/grids.hpp"
+#include "gl/support/sources.hpp"
 #include "gl/support/voxelize.hpp"
 
 #include <reference/overlap.hpp>
 #include <reference/shapes.hpp>
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include <gmock/gmock.h>
-
-#include <cstring>
 
 namespace lamina {
 namespace {
 
 namespace ref = reference;
+using test::testGrid;
 using testing::AllOf;
 using testing::HasSubstr;
 
-GridTransform testGrid(std::uint32_t slices = 64) {
-    return GridTransform::box({{-1, -1, -1}, {1, 1, 1}}, {48, 40, slices}).value();
-}
-
-const TriangleMesh kKnot = ref::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 64, 12);
+const TriangleMesh kKnot = test::makeKnot();
 constexpr VoxelizerDesc kConservative{Backend::Overlap, Coverage::Conservative};
 
 class OverlapSourceGlTest : public test::GlTest {
 protected:
-    void TearDown() override {
-        gl().DeleteBuffers(static_cast<GLsizei>(mBuffers.size()), mBuffers.data());
-        mBuffers.clear();
-        GlTest::TearDown();
-    }
-
-    GLuint hostBuffer(std::span<const std::byte> bytes) {
-        GLuint id = 0;
-        gl().CreateBuffers(1, &id);
-        gl().NamedBufferData(id, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
-                             GL_STATIC_DRAW);
-        mBuffers.push_back(id);
-        return id;
-    }
-
     BitGrid voxelize(const GeometrySource& source) {
         return test::voxelize(device(), kConservative, {&source, 1}, testGrid());
     }
@@ -54,7 +34,6 @@ protected:
     /// `count` separate triangles on a spiral, made by gl_VertexID alone.
     DrawSource spiral(std::uint32_t count, std::uint64_t maxTriangles);
 
-    std::vector<GLuint> mBuffers;
     int mDraws = 0;
 };
 
@@ -62,50 +41,11 @@ TEST_F(OverlapSourceGlTest, MeshViewsOfEveryLayoutGiveTheSameVoxels) {
     const BitGrid right = expected(kKnot);
     EXPECT_EQ(compare(ref::overlap(kKnot, testGrid(), {.grow = -1e-9}).value(), right)->onlyFirst,
               0u);
-    std::vector<std::uint16_t> shortIndices(7); // begins at an offset
-    std::vector<glm::vec3> soup;
-    for (const glm::uvec3& triangle : kKnot.triangles)
-        for (int corner = 0; corner < 3; ++corner) {
-            shortIndices.push_back(static_cast<std::uint16_t>(triangle[corner]));
-            soup.push_back(kKnot.positions[triangle[corner]]);
-        }
-    const GLuint longBuffer = hostBuffer(std::as_bytes(std::span(kKnot.triangles)));
-    // Its last word is half a word: not readable as storage, so it is captured.
-    ASSERT_EQ(shortIndices.size() % 2, 1u);
-    const GLuint shortBuffer = hostBuffer(std::as_bytes(std::span(shortIndices)));
-    shortIndices.push_back(0);
-    const GLuint evenBuffer = hostBuffer(std::as_bytes(std::span(shortIndices)));
-    for (const std::uint32_t stride : {12u, 16u, 100u, 2048u})
-        for (const std::uint64_t offset :
-             {std::uint64_t{0}, std::uint64_t{4}, std::uint64_t{1028}}) {
-            const auto interleave = [&](std::span<const glm::vec3> positions) {
-                std::vector<std::byte> bytes(offset + positions.size() * stride, std::byte{0x7f});
-                for (std::size_t i = 0; i < positions.size(); ++i)
-                    std::memcpy(bytes.data() + offset + i * stride, &positions[i], 12);
-                return hostBuffer(bytes);
-            };
-            MeshView view;
-            view.vertexBuffer = interleave(kKnot.positions);
-            view.vertexStrideBytes = stride;
-            view.positionOffsetBytes = offset;
-            view.vertexCount = static_cast<std::uint32_t>(kKnot.positions.size());
-            view.indexBuffer = longBuffer;
-            view.indexType = IndexType::UInt32;
-            view.indexCount = static_cast<std::uint32_t>(soup.size());
-            EXPECT_TRUE(compare(voxelize(view), right)->equal()) << stride << " " << offset;
-            view.indexType = IndexType::UInt16;
-            view.indexOffsetBytes = 14;
-            for (const GLuint buffer : {shortBuffer, evenBuffer}) {
-                view.indexBuffer = buffer;
-                EXPECT_TRUE(compare(voxelize(view), right)->equal()) << stride << " " << offset;
-            }
-            view = {};
-            view.vertexBuffer = interleave(soup);
-            view.vertexStrideBytes = stride;
-            view.positionOffsetBytes = offset;
-            view.vertexCount = static_cast<std::uint32_t>(soup.size());
-            EXPECT_TRUE(compare(voxelize(view), right)->equal()) << stride << " " << offset;
-        }
+    test::forEachLayout(
+        kKnot, [&](std::span<const std::byte> bytes) { return hostBuffer(bytes); },
+        [&](const MeshView& view, const std::string& layout) {
+            EXPECT_TRUE(compare(voxelize(view), right)->equal()) << layout;
+        });
 }
 
 TEST_F(OverlapSourceGlTest, BuffersLargerThanAStorageBindingAreCaptured) {
@@ -125,22 +65,16 @@ TEST_F(OverlapSourceGlTest, IndicesOutOfRangeDropTheirTriangles) {
 }
 
 TEST_F(OverlapSourceGlTest, SeveralMeshesWithModelMatricesGatherInOneGrid) {
-    const glm::mat4 models[] = {
-        glm::mat4(1.0f),
-        glm::translate(glm::mat4(1.0f), {0.25f, -0.5f, 0.125f}),
-        glm::rotate(glm::scale(glm::mat4(1.0f), {0.5f, -1.5f, 1.0f}), 0.7f, glm::vec3(1, 2, 3)),
-    };
-    const TriangleMesh meshes[] = {ref::makeIcosphere({0.3f, 0, 0}, 0.4f, 2), kKnot,
-                                   ref::makeCube({0, 0.2f, 0}, 0.8f)};
+    const auto meshes = test::placedMeshes();
     std::vector<MeshBuffers> buffers;
     std::vector<GeometrySource> sources;
     BitGrid must = BitGrid::create(testGrid()).value();
     BitGrid may = must;
-    for (int i = 0; i < 3; ++i) {
-        buffers.push_back(MeshBuffers::upload(device(), meshes[i]).value());
-        sources.emplace_back(buffers.back().view(models[i]));
+    for (const test::PlacedMesh& placed : meshes) {
+        buffers.push_back(MeshBuffers::upload(device(), placed.mesh).value());
+        sources.emplace_back(buffers.back().view(placed.model));
         const auto add = [&](BitGrid& grid, double grow) {
-            ref::overlap(meshes[i], testGrid(), {glm::dmat4(models[i]), grow})
+            ref::overlap(placed.mesh, testGrid(), {glm::dmat4(placed.model), grow})
                 ->forEachSet([&](const glm::uvec3& voxel) { grid.set(voxel); });
         };
         add(must, -1e-9);
@@ -154,7 +88,8 @@ TEST_F(OverlapSourceGlTest, SeveralMeshesWithModelMatricesGatherInOneGrid) {
     EXPECT_EQ(compare(found, may)->onlyFirst, 0u);
     EXPECT_EQ(stats.sources, 3u);
     EXPECT_EQ(stats.passes, 1u);
-    EXPECT_EQ(stats.meshTriangles, meshes[0].triangles.size() + meshes[1].triangles.size() + 12);
+    EXPECT_EQ(stats.meshTriangles,
+              meshes[0].mesh.triangles.size() + meshes[1].mesh.triangles.size() + 12);
     EXPECT_EQ(stats.gridBytes, grid.gpuBytes());
     // Reused, what it held is replaced.
     const std::uint32_t buffer = grid.buffer();

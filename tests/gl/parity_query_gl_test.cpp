@@ -1,7 +1,6 @@
 // lamina/parity.glsl from every stage, point batches, and their host twin.
 
-#include "gl/support/gl_test.hpp"
-#include "gl/support/parity.hpp"
+#include "gl/support/parity_query.hpp"
 #include "parity/parity_constants.hpp"
 
 #include <lamina/gl/shaders.hpp>
@@ -22,49 +21,19 @@ namespace {
 
 namespace ref = reference;
 using test::BuiltSprite;
+using test::kUnitBox;
+using test::ParityQueryGlTest;
+using test::parityText;
 using testing::HasSubstr;
 
-const Box3 kUnitBox{{-1, -1, -1}, {1, 1, 1}};
-
-std::string parityText(int count, const std::string& settings = {}) {
-    return "#version 450 core\n#define LAMINA_PARITY_COUNT " + std::to_string(count) + "\n" +
-           settings + shaderSource("lamina/parity.glsl").value();
+std::vector<std::uint32_t> masks(const Device& device, const SpriteSet& set,
+                                 std::span<const glm::vec3> points,
+                                 const PointQuery& query = {.answer = PointAnswer::Masks}) {
+    const auto bytes = PointClassifier::create(device).value().download(set, points, query).value();
+    std::vector<std::uint32_t> words(bytes.size() / 4);
+    std::memcpy(words.data(), bytes.data(), bytes.size());
+    return words;
 }
-
-class ParityQueryGlTest : public test::GlTest {
-protected:
-    /// What a compute shader's `vec4 ask(vec3 world)` says of each point.
-    std::vector<glm::vec4> ask(const SpriteSet& set, std::span<const glm::vec3> points,
-                               const std::string& function) {
-        const GLuint program =
-            buildProgram({{GL_COMPUTE_SHADER, parityText(static_cast<int>(std::max(set.size(), 1u)),
-                                                         "#define LAMINA_PARITY_BLOCK_BINDING 3\n"
-                                                         "#define LAMINA_PARITY_TEXTURE_UNIT 5\n") +
-                                                  function + R"(
-layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Points { float points[]; };
-layout(std430, binding = 1) buffer Results { vec4 results[]; };
-void main() {
-    uint i = gl_GlobalInvocationID.x;
-    if (i < uint(results.length()))
-        results[i] = ask(vec3(points[3u * i], points[3u * i + 1u], points[3u * i + 2u]));
-})"}});
-        set.bind(3, 5);
-        std::vector<glm::vec4> results(points.size());
-        runCompute(program, std::as_bytes(points), std::as_writable_bytes(std::span(results)),
-                   static_cast<std::uint32_t>(points.size()));
-        gl().DeleteProgram(program);
-        return results;
-    }
-    std::vector<std::uint32_t> masks(const SpriteSet& set, std::span<const glm::vec3> points,
-                                     const PointQuery& query = {.answer = PointAnswer::Masks}) {
-        const auto bytes =
-            PointClassifier::create(device()).value().download(set, points, query).value();
-        std::vector<std::uint32_t> words(bytes.size() / 4);
-        std::memcpy(words.data(), bytes.data(), bytes.size());
-        return words;
-    }
-};
 
 TEST_F(ParityQueryGlTest, EveryStageAndTheHostGiveTheSameAnswers) {
     const TriangleMesh knot = ref::makeTorusKnot({0, 0, 0}, 0.55f, 0.12f, 2, 3, 256, 24);
@@ -143,7 +112,7 @@ void main() {
 
     const auto computed =
         ask(set, points, "vec4 ask(vec3 world) { return vec4(laminaParityMask(world)); }");
-    const auto batch = masks(set, points);
+    const auto batch = masks(device(), set, points);
     const SpriteLayers hosts[] = {first.sprite.download().value(),
                                   second.sprite.download().value()};
     std::size_t roundings = 0;
@@ -178,7 +147,7 @@ TEST_F(ParityQueryGlTest, SpritesMoveAndTurnInsideOut) {
         {.sprite = &built.sprite, .localToWorld = placement, .inverted = true}};
     ASSERT_TRUE(set.update(instances));
     const auto points = test::randomPoints({{-2, -2, -2}, {2, 2, 2}}, 20000, 3);
-    const auto found = masks(set, points);
+    const auto found = masks(device(), set, points);
     const glm::dmat4 back = glm::inverse(placement);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -201,7 +170,7 @@ TEST_F(ParityQueryGlTest, ThirtyTwoSpritesAnswerTogether) {
     std::vector<glm::vec3> points;
     for (int x = -1; x < 35; ++x)
         points.emplace_back(static_cast<float>(x) + 0.5f, 0.5f, 0.5f);
-    const auto found = masks(set, points);
+    const auto found = masks(device(), set, points);
     for (int x = -1; x < 35; ++x) {
         std::uint64_t expected = 0;
         for (int s = x - 1; s <= x; ++s)
@@ -222,7 +191,7 @@ TEST_F(ParityQueryGlTest, ThirtyTwoSpritesAnswerTogether) {
     EXPECT_THAT(set.update(flat).error().text, HasSubstr("invertible localToWorld"));
     // A set without sprites contains nothing.
     ASSERT_TRUE(set.update({}));
-    EXPECT_EQ(masks(set, points), std::vector<std::uint32_t>(points.size()));
+    EXPECT_EQ(masks(device(), set, points), std::vector<std::uint32_t>(points.size()));
 }
 
 TEST_F(ParityQueryGlTest, RulesAndFormatsAgreeWithMasks) {
@@ -238,7 +207,7 @@ TEST_F(ParityQueryGlTest, RulesAndFormatsAgreeWithMasks) {
     const auto all = test::randomPoints(kUnitBox, 1000, 9);
     for (const std::size_t count : {1u, 3u, 4u, 31u, 32u, 33u, 127u, 1000u}) {
         const std::span points(all.data(), count);
-        const auto mask = masks(set, points);
+        const auto mask = masks(device(), set, points);
         for (const SpriteRule rule :
              {SpriteRule::Union, SpriteRule::Intersection, SpriteRule::Difference}) {
             const auto bytes =
@@ -325,166 +294,7 @@ TEST_F(ParityQueryGlTest, PointsWithoutAPlaceAreOutside) {
     const std::vector<glm::vec3> points = {{nan, 0, 0},      {0, nan, 0},       {0, 0, nan},
                                            {infinity, 0, 0}, {0, -infinity, 0}, {1e38f, 0, 0},
                                            {0, 0, 5},        {0, 0, 0}};
-    EXPECT_EQ(masks(set, points), (std::vector<std::uint32_t>{2, 2, 2, 2, 2, 2, 2, 1}));
-}
-
-TEST_F(ParityQueryGlTest, BorderPointsAreReportedAndTheRestIsRight) {
-    const TriangleMesh ball = ref::makeIcosphere({0.1f, 0, 0}, 0.7f, 5);
-    const auto transform = fitSprite(kUnitBox, {1, 1, 2}, 128).value();
-    const BuiltSprite built(device(), ball, transform);
-    const DepthSprite* sprites[] = {&built.sprite};
-    const auto points = test::randomPoints(kUnitBox, 50000, 13);
-    const auto classes =
-        test::classify(device(), sprites, points, {.answer = PointAnswer::Classes});
-    const double diagonal = test::diagonalOf(transform);
-    std::size_t borders = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double distance = glm::distance(glm::dvec3(points[i]), {0.1, 0, 0}) - 0.7;
-        borders += classes[i] == 2 ? 1 : 0;
-        if (classes[i] != 2) {
-            // The icosphere's faces lie up to 4e-4 inside the ball.
-            ASSERT_EQ(classes[i], distance < -2e-4 ? 1 : 0) << distance;
-        } else {
-            // The columns around lie within 1.5 diagonals of the point, and reach one along the
-            // axis.
-            ASSERT_LE(std::abs(distance), 2.6 * diagonal + 4e-4);
-        }
-        // Within half a column it is always the border.
-        if (std::abs(distance) < 0.3 * diagonal) {
-            ASSERT_EQ(classes[i], 2) << distance / diagonal;
-        }
-    }
-    EXPECT_GT(borders, 1000u);
-}
-
-TEST_F(ParityQueryGlTest, CombinedBordersAreWhereTheyDecide) {
-    // Two boxes that overlap in [0, 0.5]: their faces inside the other are no border of the union.
-    const TriangleMesh box = ref::makeBox({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f});
-    const BuiltSprite built(device(), box, fitSprite(box.bounds(), {0, 0, 1}, 64).value());
-    auto set = SpriteSet::create(device()).value();
-    const SpriteInstance instances[] = {
-        {.sprite = &built.sprite},
-        {.sprite = &built.sprite, .localToWorld = glm::translate(glm::dmat4(1.0), {0.5, 0, 0})}};
-    ASSERT_TRUE(set.update(instances));
-    const std::vector<glm::vec3> points = {{-0.5f, 0, 0}, {0.0f, 0, 0},   {0.5f, 0, 0},
-                                           {1.0f, 0, 0},  {-0.25f, 0, 0}, {0.25f, 0, 0}};
-    auto classifier = PointClassifier::create(device()).value();
-    const auto of = [&](SpriteRule rule) {
-        auto found =
-            classifier.download(set, points, {.answer = PointAnswer::Classes, .rule = rule})
-                .value();
-        found.resize(points.size());
-        return found;
-    };
-    using Bytes = std::vector<std::uint8_t>;
-    EXPECT_EQ(of(SpriteRule::Union), (Bytes{2, 1, 1, 2, 1, 1}));
-    EXPECT_EQ(of(SpriteRule::Intersection), (Bytes{0, 2, 2, 0, 0, 1}));
-    EXPECT_EQ(of(SpriteRule::Difference), (Bytes{2, 2, 0, 0, 1, 0}));
-    // The surfaces that bound a combination.
-    const auto boundary = ask(set, points, R"(
-vec4 ask(vec3 world) {
-    uint mask = laminaParityMask(world);
-    return vec4(laminaParityIsBoundary(mask, 2, 1, LAMINA_PARITY_UNION),
-                laminaParityIsBoundary(mask, 2, 1, LAMINA_PARITY_INTERSECTION),
-                laminaParityIsBoundary(mask, 2, 1, LAMINA_PARITY_DIFFERENCE), 0.0);
-})");
-    EXPECT_EQ(boundary[1], glm::vec4(0, 1, 1, 0)) << "on the second box's face, inside the first";
-    EXPECT_EQ(boundary[3], glm::vec4(1, 0, 0, 0)) << "on its other face, outside the first";
-}
-
-TEST_F(ParityQueryGlTest, DistancesAreThoseOfTheColumnsCrossings) {
-    const float radii[] = {0.9f, 0.7f, 0.4f};
-    const TriangleMesh shells = ref::makeNestedShells({0, 0, 0}, radii, 4);
-    const auto transform = fitSprite(kUnitBox, {0.2, -0.4, 1}, 64).value();
-    const BuiltSprite built(device(), shells, transform);
-    auto set = SpriteSet::create(device()).value();
-    const double scale = 2.5;
-    const SpriteInstance instances[] = {
-        {.sprite = &built.sprite, .localToWorld = glm::scale(glm::dmat4(1.0), glm::dvec3(scale))}};
-    ASSERT_TRUE(set.update(instances));
-    const auto points = test::randomPoints({{-2.6, -2.6, -2.6}, {2.6, 2.6, 2.6}}, 5000, 23);
-    const auto found = ask(set, points, R"(
-vec4 ask(vec3 world) {
-    LaminaParityProbe probe = laminaParityProbe(0, world);
-    return vec4(probe.before, probe.after, laminaParityDistance(0, world), probe.crossings);
-})");
-    const ref::ColumnCrossings columns(shells, transform);
-    std::size_t compared = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const glm::dvec3 local = glm::dvec3(points[i]) / scale;
-        const glm::dvec3 place = transform.worldToGrid(local);
-        const glm::dvec2 edge = glm::abs(glm::dvec2(place) - glm::round(glm::dvec2(place)));
-        const bool holds = place.x > 0 && place.y > 0 && place.x < transform.size().x &&
-                           place.y < transform.size().y;
-        if (!holds || std::min(edge.x, edge.y) < 1e-3)
-            continue;
-        const double depth = (transform.worldToColumn() * glm::dvec4(local, 1.0)).z;
-        double before = 3e38, after = 3e38;
-        int crossings = 0;
-        for (const ref::Crossing& crossing : columns.at(glm::uvec2(place))) {
-            const double away = scale * (crossing.depth - depth);
-            crossings += away <= 0.0 ? 1 : 0;
-            if (away <= 0.0)
-                before = std::min(before, -away);
-            else
-                after = std::min(after, away);
-        }
-        if (std::min(before, after) < 1e-5)
-            continue;
-        ++compared;
-        const bool isIn = depth >= transform.nearDepth() && depth <= transform.farDepth();
-        EXPECT_NEAR(found[i].x, before, before < 1e38 ? 1e-5 : 1e33) << i;
-        EXPECT_NEAR(found[i].y, after, after < 1e38 ? 1e-5 : 1e33) << i;
-        EXPECT_EQ(found[i].w, isIn ? static_cast<float>(crossings) : 0.0f) << i;
-        const double nearest = std::min(before, after);
-        const double expected = isIn && crossings % 2 != 0 ? -nearest : nearest;
-        EXPECT_NEAR(found[i].z, expected, nearest < 1e38 ? 1e-5 : 1e33) << i;
-        if (HasFailure())
-            return;
-    }
-    EXPECT_GT(compared, 3000u);
-}
-
-TEST_F(ParityQueryGlTest, CoincidentCrossingsBoundNothing) {
-    const TriangleMesh boxes = ref::merged(ref::makeBox({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.0f}),
-                                           ref::makeBox({-0.5f, -0.5f, 0.0f}, {0.5f, 0.5f, 0.5f}));
-    const BuiltSprite built(device(), boxes, fitSprite(kUnitBox, {0, 0, 1}, 64).value());
-    const DepthSprite* sprites[] = {&built.sprite};
-    const SpriteSet set = test::spriteSet(device(), sprites);
-    const std::vector<glm::vec3> points = {{0, 0, -0.1f}, {0, 0, 0.1f}, {0, 0, -0.75f}};
-    const auto found = ask(set, points, R"(
-vec4 ask(vec3 world) {
-    LaminaParityProbe probe = laminaParityProbe(0, world);
-    return vec4(probe.before, probe.after, laminaParityDistance(0, world), 0.0);
-})");
-    EXPECT_NEAR(found[0].x, 0.4, 1e-6);
-    EXPECT_NEAR(found[0].y, 0.6, 1e-6);
-    EXPECT_NEAR(found[0].z, -0.4, 1e-6);
-    EXPECT_NEAR(found[1].z, -0.4, 1e-6);
-    EXPECT_NEAR(found[2].z, 0.25, 1e-6);
-}
-
-TEST_F(ParityQueryGlTest, NormalsPointOutOfTheShape) {
-    const TriangleMesh ball = ref::makeIcosphere({0, 0, 0}, 0.8f, 5);
-    const BuiltSprite built(device(), ball, fitSprite(kUnitBox, {0.5, 1, 0.2}, 256).value());
-    const DepthSprite* sprites[] = {&built.sprite};
-    const SpriteSet set = test::spriteSet(device(), sprites);
-    std::vector<glm::vec3> points;
-    for (const glm::vec3& p : test::randomPoints(kUnitBox, 4000, 4))
-        points.push_back(glm::normalize(p) * (0.8f + 0.02f * p.x));
-    const auto normals = ask(
-        set, points, "vec4 ask(vec3 world) { return vec4(laminaParityNormal(0, world), 0.0); }");
-    const glm::dvec3 axis = glm::normalize(glm::dvec3(0.5, 1, 0.2));
-    std::size_t compared = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const glm::dvec3 expected = glm::normalize(glm::dvec3(points[i]));
-        // Near the silhouette, where columns end, there is no slope to see.
-        if (std::abs(glm::dot(expected, axis)) < 0.35)
-            continue;
-        ++compared;
-        EXPECT_GT(glm::dot(glm::dvec3(normals[i]), expected), 0.99) << i;
-    }
-    EXPECT_GT(compared, 2000u);
+    EXPECT_EQ(masks(device(), set, points), (std::vector<std::uint32_t>{2, 2, 2, 2, 2, 2, 2, 1}));
 }
 
 TEST_F(ParityQueryGlTest, SharedLayoutsMatchTheLinkedProgram) {

@@ -17,13 +17,6 @@ using test::readGlState;
 
 class ParityStateGlTest : public test::GlTest {
 protected:
-    template<class Call>
-    void expectUnchanged(const char* what, Call&& call) {
-        const auto before = readGlState(gl());
-        call();
-        EXPECT_THAT(test::differences(before, readGlState(gl())), testing::IsEmpty()) << what;
-        EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
-    }
     void expectEveryCallRestores();
 };
 

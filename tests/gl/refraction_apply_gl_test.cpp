@@ -2,6 +2,7 @@
 
 #include "gl/support/gl_state.hpp"
 #include "gl/support/gl_test.hpp"
+#include "gl/support/host_draw.hpp"
 
 #include <lamina/gl/shaders.hpp>
 #include <lamina/refraction/refraction.hpp>
@@ -11,7 +12,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -24,16 +24,6 @@ namespace {
 constexpr glm::uvec2 kSize{96, 64};
 constexpr RefractionModel kModels[] = {RefractionModel::VolumeIntegral,
                                        RefractionModel::TwoSurfaces, RefractionModel::ManySurfaces};
-
-constexpr const char* kVertex = R"(#version 450 core
-layout(location = 0) uniform mat4 worldToClip;
-layout(location = 0) in vec3 position;
-out vec3 world;
-void main() {
-    world = position;
-    gl_Position = worldToClip * vec4(position, 1.0);
-}
-)";
 
 class RefractionApplyGlTest : public test::GlTest {
 protected:
@@ -56,10 +46,7 @@ protected:
     }
 
     gl::Texture texture(GLenum format, const glm::uvec2& size = kSize) {
-        auto texture = gl::Texture::create(device().state(), "test", GL_TEXTURE_2D);
-        gl().TextureStorage2D(texture.id(), 1, format, static_cast<GLsizei>(size.x),
-                              static_cast<GLsizei>(size.y));
-        return texture;
+        return test::makeTexture(device(), format, size);
     }
 
     /// An environment whose light is f(direction).
@@ -95,11 +82,7 @@ protected:
     }
 
     std::vector<glm::vec4> read(GLuint texture) {
-        std::vector<glm::vec4> pixels(kSize.x * kSize.y, glm::vec4(-7.0f));
-        gl().GetTextureImage(texture, 0, GL_RGBA, GL_FLOAT,
-                             static_cast<GLsizei>(pixels.size() * sizeof(glm::vec4)),
-                             pixels.data());
-        return pixels;
+        return test::readPixels(device(), texture, kSize);
     }
 
     RefractionObject object() const { return {{&mSource, 1}, {&mGlass, 1}, mMesh.bounds()}; }
@@ -131,8 +114,8 @@ protected:
             shade = "laminaRefraction(world, world, gl_FragCoord.xy)";
             forward->bind(kBlock, kUnit);
         }
-        const GLuint program =
-            buildProgram({{GL_VERTEX_SHADER, kVertex}, {GL_FRAGMENT_SHADER, fragment + R"(
+        const GLuint program = buildProgram(
+            {{GL_VERTEX_SHADER, test::kWorldVertexShader}, {GL_FRAGMENT_SHADER, fragment + R"(
 in vec3 world;
 layout(location = 0) out vec4 normals;
 layout(location = 1) out vec4 unsignedNormals;
@@ -145,41 +128,13 @@ void main() {
     forward = )" + shade + ";\n}\n"}});
         Drawn drawn{texture(GL_DEPTH_COMPONENT32F), texture(GL_RGBA32F), texture(GL_RGBA16),
                     texture(GL_R32UI), texture(GL_RGBA32F)};
-        auto framebuffer = gl::Framebuffer::create(device().state(), "test");
-        gl().NamedFramebufferTexture(framebuffer.id(), GL_DEPTH_ATTACHMENT, drawn.depth.id(), 0);
         const GLuint colors[] = {drawn.normals.id(), drawn.unsignedNormals.id(), drawn.objects.id(),
                                  drawn.forward.id()};
-        constexpr GLenum kOutputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
-                                       GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3};
-        for (int i = 0; i < 4; ++i)
-            gl().NamedFramebufferTexture(framebuffer.id(), kOutputs[i], colors[i], 0);
-        gl().NamedFramebufferDrawBuffers(framebuffer.id(), 4, kOutputs);
-        constexpr GLfloat kFarthest = 1.0f;
+        const auto framebuffer = test::makeFramebuffer(device(), drawn.depth.id(), colors);
         constexpr GLfloat kZero[4] = {};
-        gl().ClearNamedFramebufferfv(framebuffer.id(), GL_DEPTH, 0, &kFarthest);
         gl().ClearNamedFramebufferfv(framebuffer.id(), GL_COLOR, 3, kZero);
-        const auto vertexArray = gl::VertexArray::create(device().state(), "test");
-        const MeshView mesh = mBuffers->view();
-        gl().VertexArrayVertexBuffer(vertexArray.id(), 0, mesh.vertexBuffer,
-                                     static_cast<GLintptr>(mesh.positionOffsetBytes),
-                                     static_cast<GLsizei>(mesh.vertexStrideBytes));
-        gl().VertexArrayElementBuffer(vertexArray.id(), mesh.indexBuffer);
-        gl().EnableVertexArrayAttrib(vertexArray.id(), 0);
-        gl().VertexArrayAttribFormat(vertexArray.id(), 0, 3, GL_FLOAT, GL_FALSE, 0);
-        gl().VertexArrayAttribBinding(vertexArray.id(), 0, 0);
-        gl().BindVertexArray(vertexArray.id());
-        gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.id());
-        gl().Viewport(0, 0, kSize.x, kSize.y);
-        gl().Enable(GL_DEPTH_TEST);
-        gl().UseProgram(program);
-        const glm::mat4 matrix(mView.worldToClip);
-        gl().ProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, glm::value_ptr(matrix));
-        gl().DrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indexCount), GL_UNSIGNED_INT,
-                          reinterpret_cast<const void*>(mesh.indexOffsetBytes));
-        gl().Disable(GL_DEPTH_TEST);
-        gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-        gl().UseProgram(0);
-        gl().BindVertexArray(0);
+        test::drawMesh(device(), program, framebuffer.id(), kSize, mView.worldToClip,
+                       mBuffers->view());
         gl().DeleteProgram(program);
         return drawn;
     }

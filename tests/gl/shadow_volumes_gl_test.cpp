@@ -2,6 +2,7 @@
 // depth buffer.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/host_draw.hpp"
 #include "gl/support/shadow_rays.hpp"
 
 #include <reference/shapes.hpp>
@@ -157,13 +158,7 @@ TEST_F(ShadowVolumesGlTest, CastersOfTheHostsVertexStageCast) {
     const TriangleMesh still = reference::makeTorus({0.0f, 1.0f, 1.0f}, 0.6f, 0.2f, 32, 16);
     auto buffers = MeshBuffers::upload(device(), still).value();
     const MeshView mesh = buffers.view();
-    auto vertexArray = gl::VertexArray::create(device().state(), "host");
-    gl().EnableVertexArrayAttrib(vertexArray.id(), 0);
-    gl().VertexArrayAttribFormat(vertexArray.id(), 0, 3, GL_FLOAT, GL_FALSE, 0);
-    gl().VertexArrayVertexBuffer(vertexArray.id(), 0, mesh.vertexBuffer,
-                                 static_cast<GLintptr>(mesh.positionOffsetBytes),
-                                 static_cast<GLsizei>(mesh.vertexStrideBytes));
-    gl().VertexArrayElementBuffer(vertexArray.id(), mesh.indexBuffer);
+    const gl::VertexArray vertexArray = test::makeVertexArray(device(), mesh);
     DrawSource source;
     source.vertexShader = kVertexStage;
     source.draw = [&](const DrawContext& context) {

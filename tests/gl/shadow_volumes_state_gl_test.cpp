@@ -40,13 +40,6 @@ protected:
         mHost.reset();
         test::GlTest::TearDown();
     }
-    template<class Call>
-    void expectUnchanged(const char* what, Call&& call) {
-        const auto before = test::readGlState(gl());
-        call();
-        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty()) << what;
-        EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
-    }
     std::vector<float> picture(ShadowVolumes& volumes) {
         EXPECT_TRUE(volumes.prepare(mScene));
         return test::readRed(gl(), volumes.apply().value(), kSize);

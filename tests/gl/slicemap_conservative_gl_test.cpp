@@ -61,8 +61,7 @@ TriangleMesh makeEdgeOn() {
 }
 
 TEST_F(SlicemapConservativeGlTest, AgreesWithTheReferenceOnAllShapes) {
-    const GridTransform transform =
-        GridTransform::box({{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}}, {101, 83, 128}).value();
+    const GridTransform transform = test::shapesGrid({101, 83, 128});
     for (const NamedMesh& shape : test::makeShapes())
         expectTouched(shape.mesh, transform, shape.name);
 }

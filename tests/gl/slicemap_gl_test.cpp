@@ -3,6 +3,7 @@
 #include "gl/support/gl_test.hpp"
 #include "gl/support/grids.hpp"
 #include "gl/support/test_meshes.hpp"
+#include "gl/support/voxelize.hpp"
 
 #include <lamina/voxelize/voxelizer.hpp>
 
@@ -22,20 +23,8 @@ using test::NamedMesh;
 
 class SlicemapGlTest : public test::GlTest {
 protected:
-    BitGrid voxelize(Coverage coverage, std::span<const GeometrySource> sources,
-                     const GridTransform& transform) {
-        auto voxelizer = Voxelizer::create(device(), {Backend::Slicemap, coverage}).value();
-        auto grid = VoxelGrid::create(device()).value();
-        const auto stats = voxelizer->voxelize(sources, transform, grid);
-        EXPECT_TRUE(stats) << stats.error().text;
-        return grid.download().value();
-    }
-
-    BitGrid voxelize(Coverage coverage, const TriangleMesh& mesh, const GridTransform& transform,
-                     const glm::mat4& model = glm::mat4(1.0f)) {
-        auto buffers = MeshBuffers::upload(device(), mesh).value();
-        const GeometrySource source = buffers.view(model);
-        return voxelize(coverage, {&source, 1}, transform);
+    BitGrid voxelize(Coverage coverage, const TriangleMesh& mesh, const GridTransform& transform) {
+        return test::voxelize(device(), {Backend::Slicemap, coverage}, mesh, transform);
     }
 };
 
@@ -115,16 +104,14 @@ TEST_F(SlicemapGlTest, SampledIsExactOnVerticesAtPowerOfTwoFractions) {
 }
 
 TEST_F(SlicemapGlTest, SampledAgreesWithTheReferenceOnAllShapes) {
-    const GridTransform transform =
-        GridTransform::box({{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}}, {101, 83, 128}).value();
+    const GridTransform transform = test::shapesGrid({101, 83, 128});
     for (const NamedMesh& shape : makeShapes())
         expectSampled(voxelize(Coverage::Sampled, shape.mesh, transform), shape.mesh, transform,
                       shape.name);
 }
 
 TEST_F(SlicemapGlTest, FilledAgreesWithTheReferenceOnAllShapes) {
-    const GridTransform transform =
-        GridTransform::box({{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}}, {101, 83, 128}).value();
+    const GridTransform transform = test::shapesGrid({101, 83, 128});
     for (const NamedMesh& shape : makeShapes()) {
         const BitGrid filled = voxelize(Coverage::Filled, shape.mesh, transform);
         expectFilled(filled, shape.mesh, transform, shape.name);

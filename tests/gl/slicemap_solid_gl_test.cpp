@@ -20,27 +20,16 @@ namespace {
 namespace ref = reference;
 using test::expectInside;
 using test::NamedMesh;
+using test::Solid;
 using testing::HasSubstr;
 
 const Box3 kUnitBox{{-1, -1, -1}, {1, 1, 1}};
 
 class SlicemapSolidGlTest : public test::GlTest {
 protected:
-    struct Solid {
-        BitGrid bits;
-        std::uint64_t oddColumns = 0;
-        VoxelizeStats stats;
-    };
     Solid voxelize(const TriangleMesh& mesh, const GridTransform& transform,
                    Backend backend = Backend::Slicemap) {
-        auto voxelizer = Voxelizer::create(device(), {backend, Coverage::Solid}).value();
-        auto buffers = MeshBuffers::upload(device(), mesh).value();
-        auto grid = VoxelGrid::create(device()).value();
-        const GeometrySource source = buffers.view();
-        const auto stats = voxelizer->voxelize({&source, 1}, transform, grid);
-        EXPECT_TRUE(stats) << stats.error().text;
-        return {grid.download().value(), voxelizer->downloadSolidReport()->oddColumns,
-                stats.value()};
+        return test::voxelizeSolid(device(), mesh, transform, SolidRule::Parity, backend);
     }
 };
 
@@ -54,15 +43,14 @@ std::uint64_t oddColumns(const TriangleMesh& mesh, const GridTransform& transfor
 }
 
 TEST_F(SlicemapSolidGlTest, ClosedShapesEqualRayParityAndHaveNoOddColumns) {
-    const Box3 box{{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}};
     for (const NamedMesh& shape : test::makeShapes()) {
         if (!ref::isWatertight(shape.mesh))
             continue;
         for (const glm::uvec3 size : {glm::uvec3{101, 83, 128}, {300, 280, 290}}) {
-            const GridTransform transform = GridTransform::box(box, size).value();
+            const GridTransform transform = test::shapesGrid(size);
             const Solid solid = voxelize(shape.mesh, transform);
             expectInside(solid.bits, shape.mesh, transform, shape.name);
-            EXPECT_EQ(solid.oddColumns, 0u) << shape.name;
+            EXPECT_EQ(solid.report.oddColumns, 0u) << shape.name;
             EXPECT_EQ(solid.stats.passes, size.z <= 128 ? 1u : 3u);
             EXPECT_TRUE(compare(solid.bits, voxelize(shape.mesh, transform, Backend::Overlap).bits)
                             ->equal())
@@ -80,7 +68,7 @@ TEST_F(SlicemapSolidGlTest, CameraGridsAndSliceDistributionsEqualRayParity) {
             expectInside(solid.bits, shape.mesh, transform,
                          shape.name + ", " + transform.describe() + ", distribution " +
                              std::to_string(static_cast<int>(transform.distribution().kind())));
-            EXPECT_EQ(solid.oddColumns, 0u) << shape.name;
+            EXPECT_EQ(solid.report.oddColumns, 0u) << shape.name;
         }
 }
 
@@ -90,12 +78,12 @@ TEST_F(SlicemapSolidGlTest, AMeshAroundTheEyeIsFilledUpToItsSurface) {
     const Solid solid = voxelize(ball, transform);
     expectInside(solid.bits, ball, transform, "around the eye");
     // Every centre line leaves it once.
-    EXPECT_EQ(solid.oddColumns, 6400u);
+    EXPECT_EQ(solid.report.oddColumns, 6400u);
     for (const NamedMesh& shape : test::makeShapes())
         if (ref::isWatertight(shape.mesh)) {
             const Solid other = voxelize(shape.mesh, transform);
             expectInside(other.bits, shape.mesh, transform, shape.name);
-            EXPECT_EQ(other.oddColumns, oddColumns(shape.mesh, transform)) << shape.name;
+            EXPECT_EQ(other.report.oddColumns, oddColumns(shape.mesh, transform)) << shape.name;
         }
 }
 
@@ -108,7 +96,7 @@ TEST_F(SlicemapSolidGlTest, CutOffSolidsKeepTheirInside) {
                 .value();
         const Solid solid = voxelize(knot, transform);
         expectInside(solid.bits, knot, transform, "knot");
-        EXPECT_EQ(solid.oddColumns, 0u);
+        EXPECT_EQ(solid.report.oddColumns, 0u);
     }
 }
 
@@ -129,7 +117,7 @@ TEST_F(SlicemapSolidGlTest, FacesThroughVoxelCentresAreConsistent) {
     const Solid solid = voxelize(box, transform);
     EXPECT_EQ(solid.bits.count(), 5u * 3u * 4u);
     EXPECT_TRUE(compare(solid.bits, ref::inside(box, transform).value())->equal());
-    EXPECT_EQ(solid.oddColumns, 0u);
+    EXPECT_EQ(solid.report.oddColumns, 0u);
 }
 
 TEST_F(SlicemapSolidGlTest, NeedlesThatReachFarBeyondTheGridStayClosed) {
@@ -144,7 +132,7 @@ TEST_F(SlicemapSolidGlTest, NeedlesThatReachFarBeyondTheGridStayClosed) {
             const Solid solid = voxelize(needle, transform);
             const std::string name =
                 "reach " + std::to_string(reach) + ", width " + std::to_string(width);
-            EXPECT_EQ(solid.oddColumns, 0u) << name;
+            EXPECT_EQ(solid.report.oddColumns, 0u) << name;
             // Farther away, the rounding of the corners moves the needle's faces.
             if (reach <= 1e4f)
                 expectInside(solid.bits, needle, transform, name);
@@ -165,12 +153,13 @@ TEST_F(SlicemapSolidGlTest, OpenMeshesReportOddColumnsLikeTheOverlapBackend) {
             GridTransform::box({{0, 0, low}, {8, 8, high}}, glm::uvec3(8)).value();
         const Solid solid = voxelize(open, transform);
         const Solid overlap = voxelize(open, transform, Backend::Overlap);
-        EXPECT_EQ(solid.oddColumns, 12u) << low;
-        EXPECT_EQ(overlap.oddColumns, 12u) << low;
+        EXPECT_EQ(solid.report.oddColumns, 12u) << low;
+        EXPECT_EQ(overlap.report.oddColumns, 12u) << low;
         EXPECT_TRUE(compare(solid.bits, overlap.bits)->equal()) << low;
     }
-    EXPECT_EQ(voxelize(open, GridTransform::box(box, glm::uvec3(8), Axis::X).value()).oddColumns,
-              0u);
+    EXPECT_EQ(
+        voxelize(open, GridTransform::box(box, glm::uvec3(8), Axis::X).value()).report.oddColumns,
+        0u);
 }
 
 TEST_F(SlicemapSolidGlTest, ReportsBelongToTheLastCall) {
@@ -201,7 +190,7 @@ TEST_F(SlicemapSolidGlTest, RealMeshesEqualRayParity) {
             GridTransform::box(mesh.mesh.bounds(), glm::uvec3(256)).value();
         const Solid solid = voxelize(mesh.mesh, transform);
         expectInside(solid.bits, mesh.mesh, transform, mesh.name);
-        EXPECT_EQ(solid.oddColumns, oddColumns(mesh.mesh, transform)) << mesh.name;
+        EXPECT_EQ(solid.report.oddColumns, oddColumns(mesh.mesh, transform)) << mesh.name;
     }
 }
 

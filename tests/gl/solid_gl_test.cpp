@@ -1,6 +1,7 @@
 // Coverage::Solid against ray parity in double precision.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/grids.hpp"
 #include "gl/support/solid.hpp"
 #include "gl/support/test_meshes.hpp"
 #include "gl/support/voxelize.hpp"
@@ -16,34 +17,24 @@ namespace {
 
 namespace ref = reference;
 using test::NamedMesh;
+using test::Solid;
 using testing::HasSubstr;
 
 const Box3 kUnitBox{{-1, -1, -1}, {1, 1, 1}};
 
 class SolidGlTest : public test::GlTest {
 protected:
-    struct Solid {
-        BitGrid bits;
-        SolidReport report;
-    };
     Solid voxelize(const TriangleMesh& mesh, const GridTransform& transform) {
-        auto voxelizer = Voxelizer::create(device(), {.coverage = Coverage::Solid}).value();
-        auto buffers = MeshBuffers::upload(device(), mesh).value();
-        auto grid = VoxelGrid::create(device()).value();
-        const GeometrySource source = buffers.view();
-        const auto stats = voxelizer->voxelize({&source, 1}, transform, grid);
-        EXPECT_TRUE(stats) << stats.error().text;
-        return {grid.download().value(), voxelizer->downloadSolidReport().value()};
+        return test::voxelizeSolid(device(), mesh, transform);
     }
 };
 
 TEST_F(SolidGlTest, ClosedShapesEqualRayParityAndHaveNoOddColumns) {
-    const Box3 box{{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}};
     for (const NamedMesh& shape : test::makeShapes()) {
         if (!ref::isWatertight(shape.mesh))
             continue;
         for (const glm::uvec3 size : {glm::uvec3{101, 83, 128}, {300, 280, 290}}) {
-            const GridTransform transform = GridTransform::box(box, size).value();
+            const GridTransform transform = test::shapesGrid(size);
             const Solid solid = voxelize(shape.mesh, transform);
             test::expectInside(solid.bits, shape.mesh, transform, shape.name);
             EXPECT_EQ(solid.report.oddColumns, 0u) << shape.name;

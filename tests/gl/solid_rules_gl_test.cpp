@@ -2,6 +2,7 @@
 // generalized winding numbers, and against solids that are known before the mesh is damaged.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/solid.hpp"
 #include "gl/support/test_meshes.hpp"
 #include "gl/support/voxelize.hpp"
 
@@ -20,31 +21,13 @@ namespace {
 
 namespace ref = reference;
 using test::NamedMesh;
+using test::Solid;
+using test::voxelizeSolid;
 using testing::HasSubstr;
 
 const Box3 kUnitBox{{-1, -1, -1}, {1, 1, 1}};
 /// Votes that the smaller side has at least on a doubtful voxel.
 constexpr int kDoubtfulVotes = 5;
-
-struct Solid {
-    BitGrid bits;
-    SolidReport report;
-    BitGrid doubtful; ///< SolidRule::Voted alone.
-};
-
-Solid voxelizeSolid(const Device& device, SolidRule rule, const TriangleMesh& mesh,
-                    const GridTransform& transform) {
-    auto voxelizer =
-        Voxelizer::create(device, {.coverage = Coverage::Solid, .solidRule = rule}).value();
-    auto buffers = MeshBuffers::upload(device, mesh).value();
-    auto grid = VoxelGrid::create(device).value();
-    const GeometrySource source = buffers.view();
-    const auto stats = voxelizer->voxelize({&source, 1}, transform, grid);
-    EXPECT_TRUE(stats) << stats.error().text;
-    return {grid.download().value(), voxelizer->downloadSolidReport().value(),
-            rule == SolidRule::Voted ? voxelizer->downloadDoubtfulVoxels().value()
-                                     : BitGrid::create(transform).value()};
-}
 
 /// A cube of voxels around the box.
 GridTransform cubicGrid(const Box3& box, std::uint32_t size) {
@@ -99,10 +82,10 @@ TriangleMesh makeKnotAndBall() {
 class SolidRulesGlTest : public test::GlTest {
 protected:
     Solid voted(const TriangleMesh& mesh, const GridTransform& transform) {
-        return voxelizeSolid(device(), SolidRule::Voted, mesh, transform);
+        return voxelizeSolid(device(), mesh, transform, SolidRule::Voted);
     }
     Solid flooded(const TriangleMesh& mesh, const GridTransform& transform) {
-        return voxelizeSolid(device(), SolidRule::FloodFill, mesh, transform);
+        return voxelizeSolid(device(), mesh, transform, SolidRule::FloodFill);
     }
 
     /// Majorities and doubts as counted on the host; at most one voxel in 100,000 of the grid
@@ -194,7 +177,7 @@ TEST_F(SolidRulesGlTest, OverlappingPartsAreTheirUnionAndInwardOnesCavities) {
     }
     // Parity hollows them out.
     EXPECT_GT(
-        errorShare(voxelizeSolid(device(), SolidRule::Parity, overlapping, transform).bits, both),
+        errorShare(voxelizeSolid(device(), overlapping, transform, SolidRule::Parity).bits, both),
         0.1);
 
     const float radii[] = {0.9f, 0.6f, 0.3f};

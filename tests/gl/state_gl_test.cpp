@@ -18,17 +18,7 @@ using test::differences;
 using test::OddGlState;
 using test::readGlState;
 
-class StateGlTest : public test::GlTest {
-protected:
-    /// Runs a call in the odd state and expects it to change nothing.
-    template<class Call>
-    void expectUnchanged(const char* what, Call&& call) {
-        const auto before = readGlState(gl());
-        call();
-        EXPECT_THAT(differences(before, readGlState(gl())), testing::IsEmpty()) << what;
-        EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
-    }
-};
+class StateGlTest : public test::GlTest {};
 
 const TriangleMesh kBox = reference::makeBox({0.25f, 0.25f, 0.25f}, {0.75f, 0.75f, 0.75f});
 

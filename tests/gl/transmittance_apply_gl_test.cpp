@@ -1,10 +1,10 @@
 // apply() over what a host has drawn, host shadow maps, GL state and errors.
 
 #include "gl/support/gl_state.hpp"
+#include "gl/support/host_draw.hpp"
 #include "gl/support/transmittance_probe.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
 #include <gmock/gmock.h>
 #include <reference/shapes.hpp>
 
@@ -15,16 +15,6 @@ namespace lamina {
 namespace {
 
 constexpr glm::uvec2 kSize{160, 120};
-
-constexpr const char* kVertex = R"(#version 450 core
-layout(location = 0) uniform mat4 worldToClip;
-layout(location = 0) in vec3 position;
-out vec3 world;
-void main() {
-    world = position;
-    gl_Position = worldToClip * vec4(position, 1.0);
-}
-)";
 
 /// A host that draws leaves, a ball and a floor with its own forward shader.
 class TransmittanceApplyGlTest : public test::TransmittanceGlTest {
@@ -57,40 +47,7 @@ protected:
     }
 
     gl::Texture texture(GLenum format, const glm::uvec2& size = kSize) {
-        auto texture = gl::Texture::create(device().state(), "test", GL_TEXTURE_2D);
-        gl().TextureStorage2D(texture.id(), 1, format, static_cast<GLsizei>(size.x),
-                              static_cast<GLsizei>(size.y));
-        return texture;
-    }
-
-    /// Draws a mesh with the host's program into a framebuffer, depth cleared to 1.
-    void drawMesh(GLuint program, GLuint framebuffer, const glm::uvec2& size,
-                  const glm::dmat4& worldToClip, const MeshView& mesh) {
-        GLuint vertexArray = 0;
-        gl().CreateVertexArrays(1, &vertexArray);
-        gl().VertexArrayVertexBuffer(vertexArray, 0, mesh.vertexBuffer,
-                                     static_cast<GLintptr>(mesh.positionOffsetBytes),
-                                     static_cast<GLsizei>(mesh.vertexStrideBytes));
-        gl().VertexArrayElementBuffer(vertexArray, mesh.indexBuffer);
-        gl().EnableVertexArrayAttrib(vertexArray, 0);
-        gl().VertexArrayAttribFormat(vertexArray, 0, 3, GL_FLOAT, GL_FALSE, 0);
-        gl().VertexArrayAttribBinding(vertexArray, 0, 0);
-        gl().BindVertexArray(vertexArray);
-        gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-        gl().Viewport(0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y));
-        gl().Enable(GL_DEPTH_TEST);
-        constexpr GLfloat kFarthest = 1.0f;
-        gl().ClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &kFarthest);
-        gl().UseProgram(program);
-        const glm::mat4 matrix(worldToClip);
-        gl().ProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, glm::value_ptr(matrix));
-        gl().DrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.indexCount), GL_UNSIGNED_INT,
-                          reinterpret_cast<const void*>(mesh.indexOffsetBytes));
-        gl().Disable(GL_DEPTH_TEST);
-        gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-        gl().UseProgram(0);
-        gl().BindVertexArray(0);
-        gl().DeleteVertexArrays(1, &vertexArray);
+        return test::makeTexture(device(), format, size);
     }
 
     /// Depth, normals and the forward shader's T of the scene.
@@ -101,7 +58,7 @@ protected:
     Drawn drawScene(Transmittance& transmittance) {
         constexpr std::uint32_t kBlock = 1, kUnit = 4;
         const GLuint program =
-            buildProgram({{GL_VERTEX_SHADER, kVertex},
+            buildProgram({{GL_VERTEX_SHADER, test::kWorldVertexShader},
                           {GL_FRAGMENT_SHADER,
                            "#version 450 core\n" + transmittance.shaderDefines(kBlock, kUnit) +
                                shaderSource("lamina/transmittance.glsl").value() + R"(
@@ -118,29 +75,20 @@ void main() {
 )"}});
         Drawn drawn{texture(GL_DEPTH_COMPONENT32F), texture(GL_RGBA32F), texture(GL_RGBA16),
                     texture(GL_RGBA32F)};
-        auto framebuffer = gl::Framebuffer::create(device().state(), "test");
-        gl().NamedFramebufferTexture(framebuffer.id(), GL_DEPTH_ATTACHMENT, drawn.depth.id(), 0);
-        constexpr GLenum kOutputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
-                                       GL_COLOR_ATTACHMENT2};
         const GLuint colors[] = {drawn.normals.id(), drawn.unsignedNormals.id(),
                                  drawn.forward.id()};
-        for (int i = 0; i < 3; ++i)
-            gl().NamedFramebufferTexture(framebuffer.id(), kOutputs[i], colors[i], 0);
-        gl().NamedFramebufferDrawBuffers(framebuffer.id(), 3, kOutputs);
+        const auto framebuffer = test::makeFramebuffer(device(), drawn.depth.id(), colors);
         constexpr GLfloat kOne[] = {1.0f, 1.0f, 1.0f, 1.0f};
         gl().ClearNamedFramebufferfv(framebuffer.id(), GL_COLOR, 2, kOne);
         transmittance.bind(kBlock, kUnit);
-        drawMesh(program, framebuffer.id(), kSize, mView.worldToClip, mSceneBuffers->view());
+        test::drawMesh(device(), program, framebuffer.id(), kSize, mView.worldToClip,
+                       mSceneBuffers->view());
         gl().DeleteProgram(program);
         return drawn;
     }
 
     std::vector<glm::vec4> read(GLuint texture) {
-        std::vector<glm::vec4> pixels(kSize.x * kSize.y, glm::vec4(-7.0f));
-        gl().GetTextureImage(texture, 0, GL_RGBA, GL_FLOAT,
-                             static_cast<GLsizei>(pixels.size() * sizeof(glm::vec4)),
-                             pixels.data());
-        return pixels;
+        return test::readPixels(device(), texture, kSize);
     }
 
     static double shareBeyond(const std::vector<glm::vec4>& first,
@@ -231,8 +179,9 @@ TEST_F(TransmittanceApplyGlTest, AgreesWithTheEnginesForwardShader) {
 }
 
 TEST_F(TransmittanceApplyGlTest, HostShadowMapsOfAllKinds) {
-    const GLuint program = buildProgram(
-        {{GL_VERTEX_SHADER, kVertex}, {GL_FRAGMENT_SHADER, "#version 450 core\nvoid main() {}\n"}});
+    const GLuint program =
+        buildProgram({{GL_VERTEX_SHADER, test::kWorldVertexShader},
+                      {GL_FRAGMENT_SHADER, "#version 450 core\nvoid main() {}\n"}});
     std::mt19937 random(1);
     std::uniform_real_distribution<double> unit(-3.0, 3.0);
     std::vector<test::ProbePoint> points;
@@ -241,8 +190,7 @@ TEST_F(TransmittanceApplyGlTest, HostShadowMapsOfAllKinds) {
     auto transmittance =
         Transmittance::create(device(), {.size = {64, 64, 64}, .maxFaces = 6}).value();
     constexpr glm::uvec2 kMap{512, 512};
-    auto framebuffer = gl::Framebuffer::create(device().state(), "test");
-    gl().NamedFramebufferDrawBuffer(framebuffer.id(), GL_NONE);
+    const auto framebuffer = test::makeFramebuffer(device(), 0, {});
     const MeshView opaque = mOpaqueBuffers->view();
 
     // The ball fills most of one face of the cube after the other.
@@ -277,11 +225,11 @@ TEST_F(TransmittanceApplyGlTest, HostShadowMapsOfAllKinds) {
             for (int face = 0; face < 6; ++face) {
                 gl().NamedFramebufferTextureLayer(framebuffer.id(), GL_DEPTH_ATTACHMENT, id, 0,
                                                   face);
-                drawMesh(program, framebuffer.id(), kMap,
-                         map.faceProjection * glm::lookAt(mLight.position,
-                                                          mLight.position + kAlong[face],
-                                                          kUp[face]),
-                         opaque);
+                test::drawMesh(device(), program, framebuffer.id(), kMap,
+                               map.faceProjection * glm::lookAt(mLight.position,
+                                                                mLight.position + kAlong[face],
+                                                                kUp[face]),
+                               opaque);
             }
         } else {
             mLight.direction = {0.3, -1.0, 0.2};
@@ -294,12 +242,12 @@ TEST_F(TransmittanceApplyGlTest, HostShadowMapsOfAllKinds) {
                 gl().TextureStorage3D(id, 1, GL_DEPTH_COMPONENT32F, kMap.x, kMap.y, 3);
                 map.layer = 1;
                 gl().NamedFramebufferTextureLayer(framebuffer.id(), GL_DEPTH_ATTACHMENT, id, 0, 1);
-                drawMesh(program, framebuffer.id(), kMap, map.worldToClip, opaque);
+                test::drawMesh(device(), program, framebuffer.id(), kMap, map.worldToClip, opaque);
             } else {
                 // As glTexImage2D leaves it, larger than the part in use.
                 const gl::Texture part = texture(GL_DEPTH_COMPONENT16, kMap);
                 gl().NamedFramebufferTexture(framebuffer.id(), GL_DEPTH_ATTACHMENT, part.id(), 0);
-                drawMesh(program, framebuffer.id(), kMap, map.worldToClip, opaque);
+                test::drawMesh(device(), program, framebuffer.id(), kMap, map.worldToClip, opaque);
                 gl().GenTextures(1, &id);
                 gl().BindTexture(GL_TEXTURE_2D, id);
                 gl().TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT16, 700, 600, 0,

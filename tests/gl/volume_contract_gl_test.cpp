@@ -3,6 +3,8 @@
 
 #include "gl/support/gl_state.hpp"
 #include "gl/support/gl_test.hpp"
+#include "gl/support/grids.hpp"
+#include "gl/support/sources.hpp"
 
 #include <lamina/gl/shaders.hpp>
 #include <lamina/voxelize/volume_voxelizer.hpp>
@@ -17,13 +19,13 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 namespace lamina {
 namespace {
 
 namespace ref = reference;
+using test::testGrid;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -34,12 +36,8 @@ constexpr VolumeLayout kHalves{VolumeFormat::R32UI, VolumeFormat::R16F, VolumeFo
 constexpr VolumeLayout kBytes{VolumeFormat::R8, VolumeFormat::R8, VolumeFormat::RGBA8,
                               VolumeFormat::RGBA8, VolumeFormat::RGBA8};
 
-GridTransform testGrid(std::uint32_t slices = 64) {
-    return GridTransform::box({{-1, -1, -1}, {1, 1, 1}}, {48, 40, slices}).value();
-}
-
 TriangleMesh coloredKnot() {
-    TriangleMesh mesh = ref::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 64, 12);
+    TriangleMesh mesh = test::makeKnot();
     for (const glm::vec3& position : mesh.positions)
         mesh.colors.emplace_back(position * 0.4f + 0.5f, 1.0f);
     return mesh;
@@ -48,28 +46,6 @@ const TriangleMesh kKnot = coloredKnot();
 
 class VolumeContractGlTest : public test::GlTest {
 protected:
-    template<class Call>
-    void expectUnchanged(const char* what, Call&& call) {
-        const auto before = test::readGlState(gl());
-        call();
-        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty()) << what;
-        EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
-    }
-
-    GLuint hostBuffer(std::span<const std::byte> bytes) {
-        GLuint id = 0;
-        gl().CreateBuffers(1, &id);
-        gl().NamedBufferData(id, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
-                             GL_STATIC_DRAW);
-        mHostBuffers.push_back(id);
-        return id;
-    }
-
-    void TearDown() override {
-        gl().DeleteBuffers(static_cast<GLsizei>(mHostBuffers.size()), mHostBuffers.data());
-        GlTest::TearDown();
-    }
-
     VolumeData voxelize(std::span<const GeometrySource> sources, const GridTransform& transform,
                         const VolumeLayout& layout) {
         auto voxelizer = VolumeVoxelizer::create(device()).value();
@@ -77,8 +53,6 @@ protected:
         EXPECT_TRUE(voxelizer.voxelize(sources, {}, transform, volume));
         return volume.download().value();
     }
-
-    std::vector<GLuint> mHostBuffers;
 };
 
 TEST_F(VolumeContractGlTest, EveryCallRestoresTheState) {
@@ -198,15 +172,7 @@ TEST_F(VolumeContractGlTest, ColoursAsBytesAndStreamsOfTheirOwn) {
 }
 
 TEST_F(VolumeContractGlTest, NonFiniteAndDegenerateTrianglesHitNothing) {
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const float infinity = std::numeric_limits<float>::infinity();
-    const glm::vec3 corners[] = {
-        {nan, 0, 0}, {1, 0, 0},        {0, 1, 0},    // NaN
-        {0, 0, 0},   {infinity, 0, 0}, {0, 1, 0},    // infinite
-        {0, 0, 0},   {0.5f, 0.5f, 0},  {1, 1, 0},    // collinear
-        {0, 0, 0},   {0, 0, 0},        {0, 0, 0},    // a point
-        {0, 0, -1},  {0, 1, -1},       {0, 0.5f, 1}, // edge-on
-    };
+    const auto corners = test::degenerateTriangles();
     MeshView view;
     view.vertexBuffer = hostBuffer(std::as_bytes(std::span(corners)));
     view.vertexCount = 15;

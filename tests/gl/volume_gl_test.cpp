@@ -1,6 +1,7 @@
 // Volumes against the double-precision reference, and what VolumeGrid and VolumeVoxelizer promise.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/grids.hpp"
 #include "gl/support/test_meshes.hpp"
 
 #include <lamina/voxelize/volume_voxelizer.hpp>
@@ -22,27 +23,10 @@ namespace {
 
 namespace ref = reference;
 
+using test::cameraGrid;
 using test::makeShapes;
 using test::NamedMesh;
-
-GridTransform cameraGrid(Projection projection, const glm::uvec3& size,
-                         const SliceDistribution& distribution = SliceDistribution::linear()) {
-    const glm::dmat4 view = glm::lookAt(glm::dvec3(1.1, 1.7, 2.3), glm::dvec3(0.1, 0.0, -0.1),
-                                        glm::dvec3(0.1, 1.0, 0.0));
-    GridCamera camera = GridCamera::perspective(view, 0.9, double(size.x) / size.y, 1.2, 4.9);
-    if (projection == Projection::Orthographic) {
-        camera.projection = projection;
-        camera.left = -1.4;
-        camera.right = 1.5;
-        camera.bottom = -1.3;
-        camera.top = 1.4;
-    }
-    return GridTransform::camera(camera, size, distribution).value();
-}
-
-GridTransform boxGrid(const glm::uvec3& size, Axis axis = Axis::Z) {
-    return GridTransform::box({{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}}, size, axis).value();
-}
+using test::shapesGrid;
 
 class VolumeGlTest : public test::GlTest {
 protected:
@@ -91,7 +75,7 @@ TEST_F(VolumeGlTest, CountsAgreeWithTheReferenceOnAllShapesAndSizes) {
     for (const NamedMesh& shape : makeShapes())
         for (const glm::uvec3& size :
              {glm::uvec3{101, 83, 128}, {1, 1, 1}, {33, 200, 7}, {64, 64, 8}, {20, 30, 600}}) {
-            const GridTransform transform = boxGrid(size);
+            const GridTransform transform = shapesGrid(size);
             const ref::Volume expected = ref::volume(shape.mesh, transform);
             expectCounts(voxelize(shape.mesh, transform).counts, expected,
                          shape.name + ", " + transform.describe());
@@ -102,28 +86,14 @@ TEST_F(VolumeGlTest, CountsAgreeWithTheReferenceOnAllShapesAndSizes) {
 }
 
 TEST_F(VolumeGlTest, CameraGridsAndSliceDistributionsAgreeWithTheReference) {
-    std::vector<float> boundaries(101);
-    for (std::size_t k = 0; k < boundaries.size(); ++k)
-        boundaries[k] = std::pow(static_cast<float>(k) / 100.0f, 1.7f);
-    for (const Projection projection : {Projection::Orthographic, Projection::Perspective})
-        for (const SliceDistribution& distribution :
-             {SliceDistribution::linear(), SliceDistribution::logarithmic(),
-              SliceDistribution::custom(boundaries)}) {
-            const GridTransform transform = cameraGrid(projection, {90, 71, 100}, distribution);
-            for (const NamedMesh& shape : makeShapes())
-                expectCounts(voxelize(shape.mesh, transform).counts,
-                             ref::volume(shape.mesh, transform),
-                             shape.name + ", " + transform.describe());
-        }
+    for (const GridTransform& transform : test::makeCameraGrids({90, 71, 100}))
+        for (const NamedMesh& shape : makeShapes())
+            expectCounts(voxelize(shape.mesh, transform).counts, ref::volume(shape.mesh, transform),
+                         shape.name + ", " + transform.describe());
 }
 
 TEST_F(VolumeGlTest, TrianglesAroundTheEyeAgreeWithTheReference) {
-    // The camera stands inside the mesh: triangles cross the near plane and the eye's plane.
-    const glm::dmat4 view =
-        glm::lookAt(glm::dvec3(0.05, 0.1, 0.2), glm::dvec3(0.7, 0.2, -0.4), glm::dvec3(0, 1, 0));
-    const GridTransform transform =
-        GridTransform::camera(GridCamera::perspective(view, 1.3, 1.0, 0.1, 3.0), {80, 80, 96})
-            .value();
+    const GridTransform transform = test::eyeGrid({80, 80, 96});
     for (const NamedMesh& shape : makeShapes()) {
         const ref::Volume expected = ref::volume(shape.mesh, transform);
         if (std::ranges::count(expected.counts, 0u) != std::ssize(expected.counts))
@@ -201,7 +171,7 @@ TriangleMesh decorated(TriangleMesh mesh, bool withNormals) {
 }
 
 TEST_F(VolumeGlTest, NormalsAndColoursAreTheReferencesMeansInEveryFormat) {
-    const GridTransform grids[] = {boxGrid({60, 50, 64}, Axis::X),
+    const GridTransform grids[] = {shapesGrid({60, 50, 64}, Axis::X),
                                    cameraGrid(Projection::Perspective, {70, 60, 64})};
     for (const NamedMesh& shape : makeShapes())
         for (const GridTransform& transform : grids)
@@ -222,7 +192,7 @@ TEST_F(VolumeGlTest, NormalsAndColoursAreTheReferencesMeansInEveryFormat) {
 TEST_F(VolumeGlTest, ASphereHasItsRadialNormals) {
     TriangleMesh mesh = ref::makeIcosphere({0, 0, 0}, 0.9f, 5);
     mesh.normals = mesh.positions;
-    const GridTransform transform = boxGrid({64, 64, 64});
+    const GridTransform transform = shapesGrid({64, 64, 64});
     for (const VolumeLayout& layout : {kFloats, kHalves, kBytes}) {
         const VolumeData volume = voxelize(mesh, transform, layout);
         std::uint64_t checked = 0;
@@ -247,7 +217,7 @@ TEST_F(VolumeGlTest, MirroredAndSkewedModelsTurnNormalsAsTheReferenceDoes) {
     const glm::mat4 models[] = {
         glm::scale(glm::mat4(1.0f), {-0.8f, 0.5f, 0.9f}),
         glm::rotate(glm::scale(glm::mat4(1.0f), {0.3f, 0.9f, 0.6f}), 0.7f, glm::vec3(1, 2, 3))};
-    const GridTransform transform = boxGrid({60, 50, 64});
+    const GridTransform transform = shapesGrid({60, 50, 64});
     for (const glm::mat4& model : models)
         for (const bool withNormals : {false, true}) {
             const TriangleMesh mesh =
@@ -277,7 +247,7 @@ TEST_F(VolumeGlTest, RealMeshesAgreeWithTheReference) {
 }
 
 TEST_F(VolumeGlTest, SlabOverlapHitsNeighboursAsTheReferenceDoes) {
-    const GridTransform grids[] = {boxGrid({61, 53, 40}),
+    const GridTransform grids[] = {shapesGrid({61, 53, 40}),
                                    cameraGrid(Projection::Perspective, {70, 60, 33})};
     for (const NamedMesh& shape : makeShapes())
         for (const GridTransform& transform : grids)
@@ -309,7 +279,7 @@ TEST_F(VolumeGlTest, TrianglesThatSpanMoreLayersThanOnePassDrawsLoseNothing) {
     // A soup of large triangles, with more layers than columns.
     const TriangleMesh soup = ref::makeTriangleSoup({{-1, -1, -1}, {1, 1, 1}}, 60, 3.0f, 9);
     for (const GridTransform& transform :
-         {boxGrid({40, 30, 1300}), cameraGrid(Projection::Perspective, {30, 40, 1200})})
+         {shapesGrid({40, 30, 1300}), cameraGrid(Projection::Perspective, {30, 40, 1200})})
         expectCounts(voxelize(soup, transform).counts, ref::volume(soup, transform), "soup");
 }
 
@@ -338,7 +308,7 @@ TEST_F(VolumeGlTest, ADrawSourceOfTallTrianglesLosesNothingAndKnowsColours) {
     const GeometrySource sources[] = {source};
     Material materials[2];
     materials[1].color = {1.0f, 0.5f, 0.25f, 1.0f};
-    const GridTransform transform = boxGrid({50, 60, 300});
+    const GridTransform transform = shapesGrid({50, 60, 300});
     const VolumeData volume = voxelize(sources, transform, kFloats, {}, materials);
     EXPECT_THAT(passes, testing::ElementsAre(0u, 1u, 2u));
     ref::Volume expected = ref::volume(mesh, transform);
@@ -390,7 +360,7 @@ TEST_F(VolumeGlTest, OrientationRulesLeaveTrianglesOutByHowTheyFaceTheCamera) {
     // An outward sphere: its front faces are the half nearer the camera.
     const TriangleMesh mesh = ref::makeIcosphere({0, 0, 0}, 0.8f, 3);
     for (const GridTransform& transform :
-         {boxGrid(glm::uvec3(40)), boxGrid(glm::uvec3(40), Axis::Y),
+         {shapesGrid(glm::uvec3(40)), shapesGrid(glm::uvec3(40), Axis::Y),
           cameraGrid(Projection::Orthographic, {60, 60, 60}),
           cameraGrid(Projection::Perspective, {60, 60, 60})}) {
         auto buffers = MeshBuffers::upload(device(), mesh).value();

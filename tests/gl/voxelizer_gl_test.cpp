@@ -2,31 +2,27 @@
 // unchanged.
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/grids.hpp"
+#include "gl/support/sources.hpp"
 
 #include <lamina/voxelize/voxelizer.hpp>
 
 #include <reference/sampled.hpp>
 #include <reference/shapes.hpp>
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include <gmock/gmock.h>
 
-#include <cstring>
 #include <limits>
 
 namespace lamina {
 namespace {
 
 namespace ref = reference;
+using test::testGrid;
 using testing::AllOf;
 using testing::HasSubstr;
 
-GridTransform testGrid(std::uint32_t slices = 64) {
-    return GridTransform::box({{-1, -1, -1}, {1, 1, 1}}, {48, 40, slices}).value();
-}
-
-const TriangleMesh kKnot = ref::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 64, 12);
+const TriangleMesh kKnot = test::makeKnot();
 
 class VoxelizerGlTest : public test::GlTest {
 protected:
@@ -38,18 +34,7 @@ protected:
     void TearDown() override {
         mGrid.reset();
         mVoxelizer.reset();
-        gl().DeleteBuffers(static_cast<GLsizei>(mBuffers.size()), mBuffers.data());
-        mBuffers.clear();
         GlTest::TearDown();
-    }
-
-    GLuint hostBuffer(std::span<const std::byte> bytes) {
-        GLuint id = 0;
-        gl().CreateBuffers(1, &id);
-        gl().NamedBufferData(id, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
-                             GL_STATIC_DRAW);
-        mBuffers.push_back(id);
-        return id;
     }
 
     BitGrid voxelize(std::span<const GeometrySource> sources, const GridTransform& transform) {
@@ -73,73 +58,26 @@ protected:
 
     std::unique_ptr<Voxelizer> mVoxelizer;
     std::optional<VoxelGrid> mGrid;
-    std::vector<GLuint> mBuffers;
 };
 
 TEST_F(VoxelizerGlTest, MeshViewsOfEveryLayoutGiveTheSameVoxels) {
     const BitGrid expected = ref::sampled(kKnot, testGrid()).value();
-    const auto vertexCount = static_cast<std::uint32_t>(kKnot.positions.size());
-    const auto indexCount = static_cast<std::uint32_t>(kKnot.triangles.size() * 3);
-    ASSERT_LT(vertexCount, 65536u);
-
-    std::vector<std::uint16_t> shortIndices(7); // begins at an offset
-    std::vector<glm::vec3> soup;
-    for (const glm::uvec3& triangle : kKnot.triangles)
-        for (int corner = 0; corner < 3; ++corner) {
-            shortIndices.push_back(static_cast<std::uint16_t>(triangle[corner]));
-            soup.push_back(kKnot.positions[triangle[corner]]);
-        }
-    const GLuint longBuffer = hostBuffer(std::as_bytes(std::span(kKnot.triangles)));
-    const GLuint shortBuffer = hostBuffer(std::as_bytes(std::span(shortIndices)));
-
-    for (const std::uint32_t stride : {12u, 16u, 32u, 100u, 2048u})
-        for (const std::uint64_t offset :
-             {std::uint64_t{0}, std::uint64_t{4}, std::uint64_t{1028}}) {
-            const auto interleave = [&](std::span<const glm::vec3> positions) {
-                std::vector<std::byte> bytes(offset + positions.size() * stride, std::byte{0x7f});
-                for (std::size_t i = 0; i < positions.size(); ++i)
-                    std::memcpy(bytes.data() + offset + i * stride, &positions[i], 12);
-                return hostBuffer(bytes);
-            };
-            MeshView view;
-            view.vertexBuffer = interleave(kKnot.positions);
-            view.vertexStrideBytes = stride;
-            view.positionOffsetBytes = offset;
-            view.vertexCount = vertexCount;
-            view.indexBuffer = longBuffer;
-            view.indexType = IndexType::UInt32;
-            view.indexCount = indexCount;
-            EXPECT_TRUE(compare(voxelize(view), expected)->equal()) << stride << " " << offset;
-            view.indexBuffer = shortBuffer;
-            view.indexType = IndexType::UInt16;
-            view.indexOffsetBytes = 14;
-            EXPECT_TRUE(compare(voxelize(view), expected)->equal()) << stride << " " << offset;
-            if (stride > 100)
-                continue;
-            view = {};
-            view.vertexBuffer = interleave(soup);
-            view.vertexStrideBytes = stride;
-            view.positionOffsetBytes = offset;
-            view.vertexCount = static_cast<std::uint32_t>(soup.size());
-            EXPECT_TRUE(compare(voxelize(view), expected)->equal()) << stride << " " << offset;
-        }
+    test::forEachLayout(
+        kKnot, [&](std::span<const std::byte> bytes) { return hostBuffer(bytes); },
+        [&](const MeshView& view, const std::string& layout) {
+            EXPECT_TRUE(compare(voxelize(view), expected)->equal()) << layout;
+        });
 }
 
 TEST_F(VoxelizerGlTest, SeveralMeshesWithModelMatricesGatherInOneGrid) {
-    const glm::mat4 models[] = {
-        glm::mat4(1.0f),
-        glm::translate(glm::mat4(1.0f), {0.25f, -0.5f, 0.125f}),
-        glm::rotate(glm::scale(glm::mat4(1.0f), {0.5f, -1.5f, 1.0f}), 0.7f, glm::vec3(1, 2, 3)),
-    };
-    const TriangleMesh meshes[] = {ref::makeIcosphere({0.3f, 0, 0}, 0.4f, 2), kKnot,
-                                   ref::makeCube({0, 0.2f, 0}, 0.8f)};
+    const auto meshes = test::placedMeshes();
     std::vector<MeshBuffers> buffers;
     std::vector<GeometrySource> sources;
     BitGrid expected = BitGrid::create(testGrid()).value();
-    for (int i = 0; i < 3; ++i) {
-        buffers.push_back(MeshBuffers::upload(device(), meshes[i]).value());
-        sources.emplace_back(buffers.back().view(models[i]));
-        ref::sampled(meshes[i], testGrid(), {.model = glm::dmat4(models[i])})
+    for (const auto& [mesh, model] : meshes) {
+        buffers.push_back(MeshBuffers::upload(device(), mesh).value());
+        sources.emplace_back(buffers.back().view(model));
+        ref::sampled(mesh, testGrid(), {.model = glm::dmat4(model)})
             ->forEachSet([&](const glm::uvec3& voxel) { expected.set(voxel); });
     }
     EXPECT_TRUE(compare(voxelize(sources, testGrid()), expected)->equal());
@@ -148,7 +86,8 @@ TEST_F(VoxelizerGlTest, SeveralMeshesWithModelMatricesGatherInOneGrid) {
     const auto stats = mVoxelizer->voxelize(sources, testGrid(2100), *mGrid).value();
     EXPECT_EQ(stats.sources, 3u);
     EXPECT_EQ(stats.passes, 3u);
-    EXPECT_EQ(stats.meshTriangles, meshes[0].triangles.size() + meshes[1].triangles.size() + 12);
+    EXPECT_EQ(stats.meshTriangles,
+              meshes[0].mesh.triangles.size() + meshes[1].mesh.triangles.size() + 12);
     EXPECT_EQ(stats.gridBytes, mGrid->gpuBytes());
 }
 
@@ -272,15 +211,7 @@ TEST_F(VoxelizerGlTest, ADrawSourceIsDrawnOncePerPassWithStripsAndRestart) {
 }
 
 TEST_F(VoxelizerGlTest, NonFiniteAndDegenerateTrianglesSetNothing) {
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const float infinity = std::numeric_limits<float>::infinity();
-    const glm::vec3 corners[] = {
-        {nan, 0, 0}, {1, 0, 0},        {0, 1, 0},    // NaN
-        {0, 0, 0},   {infinity, 0, 0}, {0, 1, 0},    // infinite
-        {0, 0, 0},   {0.5f, 0.5f, 0},  {1, 1, 0},    // collinear
-        {0, 0, 0},   {0, 0, 0},        {0, 0, 0},    // a point
-        {0, 0, -1},  {0, 1, -1},       {0, 0.5f, 1}, // edge-on
-    };
+    const auto corners = test::degenerateTriangles();
     MeshView view;
     view.vertexBuffer = hostBuffer(std::as_bytes(std::span(corners)));
     view.vertexCount = 15;
@@ -425,108 +356,6 @@ TEST_F(VoxelizerGlTest, TheStoreFollowsTheBackendAndMemoryIsGivenBack) {
     EXPECT_TRUE(compare(voxelize(source), sampled)->equal());
     EXPECT_EQ(mGrid->store(), VoxelStore::Texture);
     EXPECT_EQ(mGrid->gpuBytes(), bytes);
-}
-
-TEST_F(VoxelizerGlTest, AutomaticPicksByCoverageAndSaysWhy) {
-    const std::pair<Coverage, Backend> expected[] = {
-        {Coverage::Sampled, Backend::MrtSlicemap},  {Coverage::Filled, Backend::MrtSlicemap},
-        {Coverage::Conservative, Backend::Overlap}, {Coverage::Separating6, Backend::Overlap},
-        {Coverage::Solid, Backend::Overlap},
-    };
-    for (const auto& [coverage, backend] : expected) {
-        auto voxelizer = Voxelizer::create(device(), {.coverage = coverage}).value();
-        EXPECT_EQ(voxelizer->backend(), backend);
-        EXPECT_THAT(voxelizer->reason(),
-                    AllOf(HasSubstr(std::string(name(backend))),
-                          HasSubstr(std::string(name(coverage))), HasSubstr(": it ")));
-        const auto asked = Voxelizer::create(device(), {backend, coverage}).value();
-        EXPECT_THAT(asked->reason(), HasSubstr("was asked for"));
-    }
-}
-
-TEST_F(VoxelizerGlTest, BackendsThatDoNotServeACoverageAreRefused) {
-    const std::pair<Coverage, Backend> refusals[] = {{Coverage::Sampled, Backend::Overlap},
-                                                     {Coverage::Filled, Backend::Overlap},
-                                                     {Coverage::Separating6, Backend::Slicemap}};
-    for (const auto& [coverage, backend] : refusals) {
-        const Backend able = backend == Backend::Slicemap ? Backend::Overlap : Backend::MrtSlicemap;
-        const auto refused = Voxelizer::create(device(), {backend, coverage});
-        ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().code, ErrorCode::Unsupported);
-        EXPECT_THAT(refused.error().text,
-                    AllOf(HasSubstr("serves " + std::string(name(coverage)) + " coverage, found " +
-                                    std::string(name(backend))),
-                          HasSubstr("Backend::Automatic or " + std::string(name(able))),
-                          HasSubstr("coverage conservative")));
-    }
-    for (const Coverage coverage : {Coverage::Conservative, Coverage::Solid})
-        for (const Backend backend : {Backend::Slicemap, Backend::Overlap})
-            EXPECT_EQ(Voxelizer::create(device(), {backend, coverage}).value()->backend(), backend);
-}
-
-TEST_F(VoxelizerGlTest, AutomaticPicksByTheGridWhereTwoBackendsServe) {
-    auto buffers = MeshBuffers::upload(device(), kKnot).value();
-    const GeometrySource source = buffers.view();
-    const Box3 box{{-1, -1, -1}, {1, 1, 1}};
-    const GridTransform linear = GridTransform::box(box, {32, 32, 32}).value();
-    const GridTransform custom =
-        GridTransform::box(box, {32, 32, 2}, Axis::Z, SliceDistribution::custom({0, 0.25f, 1}))
-            .value();
-    GridCamera eye = GridCamera::perspective(glm::dmat4(1), 1, 1, 1, 4);
-    eye.worldToEye = glm::translate(glm::dmat4(1), {0, 0, -2.5});
-    const GridTransform perspective = GridTransform::camera(eye, {32, 32, 32}).value();
-    for (const Coverage coverage : {Coverage::Conservative, Coverage::Solid}) {
-        auto voxelizer = Voxelizer::create(device(), {.coverage = coverage}).value();
-        EXPECT_TRUE(voxelizer->capabilities().perspective);
-        EXPECT_TRUE(voxelizer->capabilities().anyDistribution);
-        for (const auto& [grid, backend] : {std::pair{&linear, Backend::Overlap},
-                                            {&custom, Backend::MrtSlicemap},
-                                            {&linear, Backend::Overlap},
-                                            {&perspective, Backend::MrtSlicemap}}) {
-            ASSERT_TRUE(voxelizer->voxelize({&source, 1}, *grid, *mGrid));
-            EXPECT_EQ(voxelizer->backend(), backend);
-            EXPECT_EQ(voxelizer->capabilities().store, mGrid->store());
-            EXPECT_THAT(voxelizer->reason(), HasSubstr(std::string(name(backend)) + " serves"));
-            auto one = Voxelizer::create(device(), {.backend = backend,
-                                                    .coverage = coverage,
-                                                    .store = voxelizer->capabilities().store})
-                           .value();
-            auto expected = VoxelGrid::create(device()).value();
-            ASSERT_TRUE(one->voxelize({&source, 1}, *grid, expected));
-            EXPECT_GT(mGrid->download()->count(), 0u);
-            EXPECT_TRUE(compare(mGrid->download().value(), expected.download().value())->equal());
-            if (coverage == Coverage::Solid) {
-                EXPECT_EQ(voxelizer->downloadSolidReport()->oddColumns, 0u);
-            }
-        }
-        // A call that fails leaves the choice as it is.
-        const GeometrySource broken = MeshView{};
-        EXPECT_FALSE(voxelizer->voxelize({&broken, 1}, linear, *mGrid));
-        EXPECT_EQ(voxelizer->backend(), Backend::MrtSlicemap);
-    }
-}
-
-TEST_F(VoxelizerGlTest, AutomaticSplitsBySlicemaps) {
-    auto buffers = MeshBuffers::upload(device(), kKnot).value();
-    const GeometrySource source = buffers.view();
-    auto voxelizer = Voxelizer::create(device(), {.coverage = Coverage::Conservative}).value();
-    std::vector<VoxelGrid> grids;
-    for (int i = 0; i < 2; ++i)
-        grids.push_back(VoxelGrid::create(device()).value());
-    ASSERT_TRUE(voxelizer->voxelizeWith({&source, 1}, testGrid(), {.split = Split::Facing}, grids));
-    EXPECT_EQ(voxelizer->backend(), Backend::MrtSlicemap);
-    EXPECT_GT(grids[1].download()->count(), 0u);
-}
-
-TEST_F(VoxelizerGlTest, SaysWhatItIs) {
-    EXPECT_EQ(mVoxelizer->backend(), Backend::MrtSlicemap);
-    EXPECT_THAT(mVoxelizer->reason(), HasSubstr("mrt_slicemap"));
-    const VoxelizerCapabilities able = mVoxelizer->capabilities();
-    EXPECT_TRUE(able.perspective && able.drawSources);
-    EXPECT_EQ(able.slicesPerPass, 1024u);
-    EXPECT_EQ(able.store, VoxelStore::Texture);
-    EXPECT_GE(able.maxColumns, 16384u);
-    EXPECT_GE(able.maxSlices, 2048u * 128u);
 }
 
 } // namespace

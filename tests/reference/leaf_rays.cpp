@@ -1,12 +1,13 @@
 #include <reference/leaf_rays.hpp>
 
-#include <embree3/rtcore.h>
+#include <reference/ray_scene.hpp>
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <stdexcept>
+#include <tuple>
 
 namespace lamina::reference {
 namespace {
@@ -64,34 +65,11 @@ std::vector<SurfacePoint> sampleSurface(const TriangleMesh& mesh, std::size_t co
 }
 
 struct LeafRays::Impl {
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
-    ~Impl() {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
+    RayScene scene;
 };
 
 LeafRays::LeafRays(const TriangleMesh& leaves)
-    : mImpl(std::make_unique<Impl>()) {
-    mImpl->device = rtcNewDevice("threads=1");
-    mImpl->scene = rtcNewScene(mImpl->device);
-    rtcSetSceneFlags(mImpl->scene, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(mImpl->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                             sizeof(glm::vec3), leaves.positions.size());
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            sizeof(glm::uvec3), leaves.triangles.size());
-    if (!vertices || !indices)
-        throw std::runtime_error("embree: no memory");
-    std::ranges::copy(leaves.positions, static_cast<glm::vec3*>(vertices));
-    std::ranges::copy(leaves.triangles, static_cast<glm::uvec3*>(indices));
-    rtcSetGeometryIntersectFilterFunction(geometry, collect);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(mImpl->scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(mImpl->scene);
-}
+    : mImpl(new Impl{RayScene(leaves, collect)}) {}
 
 LeafRays::LeafRays(LeafRays&&) noexcept = default;
 LeafRays::~LeafRays() = default;
@@ -99,20 +77,7 @@ LeafRays::~LeafRays() = default;
 std::vector<double> LeafRays::crossings(const glm::dvec3& from, const glm::dvec3& along,
                                         std::uint32_t excluded) const {
     Collector collector{{}, {}, excluded};
-    rtcInitIntersectContext(&collector.context);
-    RTCRayHit query{};
-    const glm::vec3 origin(from);
-    const glm::vec3 direction(along);
-    query.ray.org_x = origin.x;
-    query.ray.org_y = origin.y;
-    query.ray.org_z = origin.z;
-    query.ray.dir_x = direction.x;
-    query.ray.dir_y = direction.y;
-    query.ray.dir_z = direction.z;
-    query.ray.tfar = 1.0f;
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(mImpl->scene, &collector.context, &query);
+    std::ignore = mImpl->scene.cast(collector.context, from, along, 1.0);
     // A filter may see a hit more than once.
     std::ranges::sort(collector.hits, {}, &Hit::triangle);
     const auto isSame = [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; };

@@ -1,5 +1,7 @@
 // Runs the build's shader compiler as the build does, on fixture trees with known mistakes.
 
+#include "support/temporary_folder.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,24 +41,16 @@ Outcome compile(const std::string& root, const std::string& options = {}) {
 
 class ScratchTree : public testing::Test {
 protected:
-    void SetUp() override {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        mRoot = std::filesystem::path(testing::TempDir()) /
-                (std::string("lamina_shader_compiler_") + test->name());
-        std::filesystem::remove_all(mRoot);
-        std::filesystem::create_directories(mRoot);
-    }
-    void TearDown() override { std::filesystem::remove_all(mRoot); }
     void write(const std::string& name, const std::string& text) {
         std::filesystem::create_directories((mRoot / name).parent_path());
-        std::ofstream(mRoot / name) << text;
+        lamina::test::writeBytes(mRoot / name, text);
     }
     [[nodiscard]] std::string at(const std::string& name) const { return (mRoot / name).string(); }
     [[nodiscard]] Outcome compileScratch(const std::string& options = {}) const {
-        return compile(mRoot.string(), options);
+        return compile(mRoot.path().string(), options);
     }
 
-    std::filesystem::path mRoot;
+    const lamina::test::TemporaryFolder mRoot;
 };
 
 const std::string kVertex = "void main() { gl_Position = vec4(0.0); }\n";

@@ -1,5 +1,6 @@
 #include "gl/shader_library.hpp"
 #include "gl/shader_source.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -250,18 +251,17 @@ TEST(ShaderLibrary, LoadsFlattened) {
 }
 
 TEST(ShaderLibrary, OverrideDirectoryReplacesSingleFiles) {
-    const auto root = std::filesystem::path(testing::TempDir()) / "lamina_shader_override";
-    std::filesystem::remove_all(root);
+    const test::TemporaryFolder root;
     std::filesystem::create_directories(root / "lamina");
-    std::ofstream(root / "lamina/bits.glsl") << "uint bitOf(int slice) { return 7u; }\n";
-    const auto shader = loadShader("voxelize/slices.frag", root.string());
-    std::filesystem::remove_all(root);
+    test::writeBytes(root / "lamina/bits.glsl", "uint bitOf(int slice) { return 7u; }\n");
+    const auto shader = loadShader("voxelize/slices.frag", root.path().string());
+    std::filesystem::remove_all(root.path());
     ASSERT_TRUE(shader) << shader.error().text;
     EXPECT_THAT(shader->text, HasSubstr("return 7u"));
     EXPECT_THAT(shader->text, HasSubstr("uvec4 wordsOf("));
     EXPECT_THAT(shader->text, Not(HasSubstr("FIXTURE_WORD_BITS;")));
 
-    const auto embedded = loadShader("voxelize/slices.frag", root.string());
+    const auto embedded = loadShader("voxelize/slices.frag", root.path().string());
     ASSERT_TRUE(embedded) << "a directory that does not exist overrides nothing";
     EXPECT_THAT(embedded->text, Not(HasSubstr("return 7u")));
 }

@@ -11,6 +11,10 @@ namespace lamina::test {
 /// GL state by name: "GL_VIEWPORT[0]" -> its values.
 using GlState = std::map<std::string, std::vector<double>>;
 
+/// How much of indexed state is read, and made odd.
+inline constexpr GLuint kDrawBuffers = 8, kViewports = 16, kTextureUnits = 16, kImageUnits = 8,
+                        kUniformBuffers = 24, kStorageBuffers = 8, kFeedbackBuffers = 4;
+
 /// Reads all context state that rasterization, compute, transfers and queries of an engine depend
 /// on; changes none of it.
 [[nodiscard]] GlState readGlState(const GladGLContext& gl);

@@ -1,5 +1,9 @@
 #include "gl/support/gl_test.hpp"
 
+#include "gl/support/gl_state.hpp"
+
+#include <gmock/gmock.h>
+
 #include <cstdio>
 #include <cstring>
 #include <mutex>
@@ -42,7 +46,24 @@ void GlTest::TearDown() {
     EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR));
     for (const std::string& message : takeHighSeverityMessages())
         ADD_FAILURE() << "high-severity GL message: " << message;
+    gl().DeleteBuffers(static_cast<GLsizei>(mHostBuffers.size()), mHostBuffers.data());
+    mHostBuffers.clear();
     mDevice.reset();
+}
+
+GLuint GlTest::hostBuffer(std::span<const std::byte> bytes) {
+    GLuint id = 0;
+    gl().CreateBuffers(1, &id);
+    gl().NamedBufferData(id, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STATIC_DRAW);
+    mHostBuffers.push_back(id);
+    return id;
+}
+
+void GlTest::expectUnchanged(const char* what, const std::function<void()>& call) {
+    const GlState before = readGlState(gl());
+    call();
+    EXPECT_THAT(differences(before, readGlState(gl())), testing::IsEmpty()) << what;
+    EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
 }
 
 GLuint GlTest::buildProgram(std::vector<std::pair<GLenum, std::string>> stages) {

@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,13 @@ protected:
     /// errors.
     [[nodiscard]] GLuint buildProgram(std::vector<std::pair<GLenum, std::string>> stages);
 
+    /// A buffer of the host's that holds `bytes`; deleted when the test ends.
+    [[nodiscard]] GLuint hostBuffer(std::span<const std::byte> bytes);
+
+    /// Fails the test if a call changes any GL state (gl_state.hpp) or leaves a GL error; `what`
+    /// names the call.
+    void expectUnchanged(const char* what, const std::function<void()>& call);
+
     /// Runs a compute shader with `invocations` work items (local_size_x = 64) that reads
     /// `input` at storage binding 0 and writes `output` at binding 1, and reads `output` back.
     void runCompute(GLuint program, std::span<const std::byte> input, std::span<std::byte> output,
@@ -42,6 +51,7 @@ protected:
 
 private:
     std::optional<Device> mDevice;
+    std::vector<GLuint> mHostBuffers;
 };
 
 } // namespace lamina::test

@@ -6,6 +6,14 @@
 
 namespace lamina::test {
 
+GridTransform testGrid(std::uint32_t slices) {
+    return GridTransform::box({{-1, -1, -1}, {1, 1, 1}}, {48, 40, slices}).value();
+}
+
+GridTransform shapesGrid(const glm::uvec3& size, Axis axis) {
+    return GridTransform::box({{-1.01, -1.03, -1.02}, {1.04, 1.02, 1.03}}, size, axis).value();
+}
+
 GridTransform cameraGrid(Projection projection, const glm::uvec3& size,
                          const SliceDistribution& distribution) {
     const glm::dmat4 view = glm::lookAt(glm::dvec3(1.1, 1.7, 2.3), glm::dvec3(0.1, 0.0, -0.1),

@@ -34,6 +34,22 @@ bool isRounding(const std::vector<ref::ColumnTriangle>& triangles, const GridTra
 
 } // namespace
 
+Solid voxelizeSolid(const Device& device, const TriangleMesh& mesh, const GridTransform& transform,
+                    SolidRule rule, Backend backend) {
+    auto voxelizer =
+        Voxelizer::create(device,
+                          {.backend = backend, .coverage = Coverage::Solid, .solidRule = rule})
+            .value();
+    auto buffers = MeshBuffers::upload(device, mesh).value();
+    auto grid = VoxelGrid::create(device).value();
+    const GeometrySource source = buffers.view();
+    const auto stats = voxelizer->voxelize({&source, 1}, transform, grid);
+    EXPECT_TRUE(stats) << stats.error().text;
+    return {grid.download().value(), voxelizer->downloadSolidReport().value(), stats.value(),
+            rule == SolidRule::Voted ? voxelizer->downloadDoubtfulVoxels().value()
+                                     : BitGrid::create(transform).value()};
+}
+
 void expectInside(const BitGrid& found, const TriangleMesh& mesh, const GridTransform& transform,
                   const std::string& name) {
     const BitGrid expected = ref::inside(mesh, transform).value();

@@ -13,6 +13,11 @@
 
 namespace lamina::test {
 
+/// What a leaf takes in most tests.
+inline constexpr float kSigma = 0.25f;
+/// exp2() and log2() of a few dozen leaves in single precision.
+inline constexpr double kRounding = 2e-5;
+
 /// A place to ask lamina/transmittance.glsl about.
 struct ProbePoint {
     glm::dvec3 position{0.0};

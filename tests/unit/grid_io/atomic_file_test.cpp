@@ -21,29 +21,29 @@ TEST(AtomicFile, AppearsWithCommitAndNotBefore) {
     ASSERT_TRUE(file->write("hello"));
     EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
     ASSERT_TRUE(file->commit());
-    EXPECT_EQ(test::readText(folder / "a.txt"), "hello");
-    EXPECT_EQ(folder.fileCount(), 1u);
+    EXPECT_EQ(test::readBytes(folder / "a.txt"), "hello");
+    EXPECT_EQ(folder.names().size(), 1u);
 }
 
 TEST(AtomicFile, LeavesNothingWithoutCommit) {
     TemporaryFolder folder;
-    test::writeText(folder / "old.txt", "old");
+    test::writeBytes(folder / "old.txt", "old");
     {
         auto file = AtomicFile::create(folder / "old.txt");
         ASSERT_TRUE(file);
         ASSERT_TRUE(file->write("new"));
     }
-    EXPECT_EQ(test::readText(folder / "old.txt"), "old");
-    EXPECT_EQ(folder.fileCount(), 1u);
+    EXPECT_EQ(test::readBytes(folder / "old.txt"), "old");
+    EXPECT_EQ(folder.names().size(), 1u);
 }
 
 TEST(AtomicFile, KeepsPermissionsOfAnExistingFile) {
     TemporaryFolder folder;
-    test::writeText(folder / "old.txt", "old");
+    test::writeBytes(folder / "old.txt", "old");
     ASSERT_EQ(chmod((folder / "old.txt").c_str(), 0640), 0);
     auto file = AtomicFile::create(folder / "old.txt");
     ASSERT_TRUE(file && file->write("new") && file->commit());
-    EXPECT_EQ(test::readText(folder / "old.txt"), "new");
+    EXPECT_EQ(test::readBytes(folder / "old.txt"), "new");
     EXPECT_EQ(std::filesystem::status(folder / "old.txt").permissions(),
               std::filesystem::perms(0640));
 }
@@ -55,7 +55,7 @@ TEST(AtomicFile, WritesWhereASymbolicLinkPoints) {
     auto file = AtomicFile::create(folder / "link.txt");
     ASSERT_TRUE(file && file->write("new") && file->commit());
     EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
-    EXPECT_EQ(test::readText(folder / "there/target.txt"), "new");
+    EXPECT_EQ(test::readBytes(folder / "there/target.txt"), "new");
 }
 
 TEST(AtomicFile, GivesUpOnLinksInACircle) {
@@ -86,7 +86,7 @@ TEST(AtomicFile, OverwritesAndAppendsAcrossItsBuffer) {
     }
     ASSERT_TRUE(file->write("end"));
     ASSERT_TRUE(file->commit());
-    EXPECT_TRUE(test::readText(folder / "big") == expected + "end");
+    EXPECT_TRUE(test::readBytes(folder / "big") == expected + "end");
 }
 
 TEST(AtomicFile, MovedObjectOwnsTheFile) {
@@ -97,7 +97,7 @@ TEST(AtomicFile, MovedObjectOwnsTheFile) {
     AtomicFile moved = std::move(*created);
     ASSERT_TRUE(moved.write("two"));
     ASSERT_TRUE(moved.commit());
-    EXPECT_EQ(test::readText(folder / "a.txt"), "one two");
+    EXPECT_EQ(test::readBytes(folder / "a.txt"), "one two");
 }
 
 TEST(AtomicFile, NamesAMissingDirectory) {
@@ -143,7 +143,7 @@ TEST(AtomicFile, NamesADirectoryWithoutPermission) {
 
 TEST(AtomicFile, KeepsTheOldFileWhenThereIsNoRoom) {
     TemporaryFolder folder;
-    test::writeText(folder / "a.bin", "old");
+    test::writeBytes(folder / "a.bin", "old");
     {
         auto file = AtomicFile::create(folder / "a.bin");
         ASSERT_TRUE(file);
@@ -155,8 +155,8 @@ TEST(AtomicFile, KeepsTheOldFileWhenThereIsNoRoom) {
         EXPECT_EQ(committed.error().code, ErrorCode::InputOutput);
         EXPECT_THAT(committed.error().text, HasSubstr("expected room for 5000 bytes"));
     }
-    EXPECT_EQ(test::readText(folder / "a.bin"), "old");
-    EXPECT_EQ(folder.fileCount(), 1u);
+    EXPECT_EQ(test::readBytes(folder / "a.bin"), "old");
+    EXPECT_EQ(folder.names().size(), 1u);
 }
 
 TEST(AtomicFile, StaysFailedAfterAFailure) {
@@ -169,7 +169,7 @@ TEST(AtomicFile, StaysFailedAfterAFailure) {
     }
     EXPECT_FALSE(file->write(std::string(2 << 20, 'x')));
     EXPECT_FALSE(file->commit());
-    EXPECT_EQ(folder.fileCount(), 0u);
+    EXPECT_EQ(folder.names().size(), 0u);
 }
 
 } // namespace

@@ -63,7 +63,7 @@ protected:
     Outcome check(const std::filesystem::path& file, const BitGrid& grid, const glm::uvec3& counts,
                   const char* up = "y", const std::string& attributes = "") {
         const Box3& box = grid.transform().boxBounds();
-        test::writeText(mFolder / "occupancy", test::occupancy(grid, counts));
+        test::writeBytes(mFolder / "occupancy", test::occupancy(grid, counts));
         std::string command = quoted(LAMINA_TEST_PYTHON) + " " + quoted(LAMINA_TEST_GRID_CHECKER) +
                               " " + quoted(file) + " " + quoted(mFolder / "occupancy");
         for (int i = 0; i < 3; ++i)
@@ -200,8 +200,8 @@ TEST_P(ForeignAttributeReader, FindsEveryColourAndNormal) {
     // Some 200 colours, which a palette holds, and more.
     for (const unsigned steps : {6u, 40u}) {
         const Painted painted = paint(grid, shape.counts, steps);
-        test::writeText(mFolder / "colors", painted.colors);
-        test::writeText(mFolder / "normals", painted.normals);
+        test::writeBytes(mFolder / "colors", painted.colors);
+        test::writeBytes(mFolder / "normals", painted.normals);
         const std::filesystem::path file = mFolder / ("grid." + std::string(name(format)));
         GridWriteOptions options;
         options.attributes = &painted.attributes;
@@ -209,6 +209,7 @@ TEST_P(ForeignAttributeReader, FindsEveryColourAndNormal) {
         options.progress = [&](double fraction) {
             EXPECT_GE(fraction, last);
             last = fraction;
+            return true;
         };
         const auto written = writeGrid(file, grid, options);
         ASSERT_TRUE(written) << written.error().text;

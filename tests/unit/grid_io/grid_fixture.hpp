@@ -1,57 +1,18 @@
 #pragma once
 
+#include "support/temporary_folder.hpp"
+
 #include <lamina/grid/bit_grid.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
 
 namespace lamina::test {
-
-/// A folder of its own for each test, removed with it.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        std::string pattern =
-            (std::filesystem::temp_directory_path() / "lamina-test-XXXXXX").string();
-        if (mkdtemp(pattern.data()) == nullptr)
-            ADD_FAILURE() << "no temporary folder";
-        mPath = pattern;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(mPath, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::filesystem::path& path() const { return mPath; }
-    std::filesystem::path operator/(const std::string& name) const { return mPath / name; }
-    std::size_t fileCount() const {
-        return static_cast<std::size_t>(
-            std::distance(std::filesystem::directory_iterator(mPath), {}));
-    }
-
-private:
-    std::filesystem::path mPath;
-};
-
-inline std::string readText(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-inline void writeText(const std::filesystem::path& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-}
 
 inline BitGrid emptyGrid(const Box3& box, const glm::uvec3& counts, Axis axis) {
     return *BitGrid::create(*GridTransform::box(box, counts, axis));

@@ -32,7 +32,7 @@ std::string binvoxFile(const std::string& dims, const std::string& data) {
 class GridRead : public testing::Test {
 protected:
     Error errorOf(const std::string& name, const std::string& content) {
-        test::writeText(mFolder / name, content);
+        test::writeBytes(mFolder / name, content);
         const auto grid = readGrid(mFolder / name);
         if (grid) {
             ADD_FAILURE() << "read without error";
@@ -71,7 +71,7 @@ TEST_F(GridRead, BinvoxKeepsThePlaceInTheWorld) {
 
 TEST_F(GridRead, BinvoxByHand) {
     // dim X Z Y: 2 along x, 3 along z, 4 along y; y runs fastest. Set: the last 5 of 24.
-    test::writeText(mFolder / "hand.binvox", binvoxFile("2 3 4", "\x00\x13\x01\x05"s));
+    test::writeBytes(mFolder / "hand.binvox", binvoxFile("2 3 4", "\x00\x13\x01\x05"s));
     const auto grid = readGrid(mFolder / "hand.binvox");
     ASSERT_TRUE(grid) << grid.error().text;
     EXPECT_EQ(grid->size(), glm::uvec3(2, 4, 3));
@@ -85,8 +85,8 @@ TEST_F(GridRead, BinvoxByHand) {
 
 TEST_F(GridRead, NpyByHand) {
     // Shape (NZ, NY, NX) = (2, 1, 3).
-    test::writeText(mFolder / "hand.npy",
-                    npyFile(npyHeader("|b1", "False", "(2, 1, 3)"), "\x00\x01\x00\x00\x00\x01"s));
+    test::writeBytes(mFolder / "hand.npy",
+                     npyFile(npyHeader("|b1", "False", "(2, 1, 3)"), "\x00\x01\x00\x00\x00\x01"s));
     const auto grid = readGrid(mFolder / "hand.npy");
     ASSERT_TRUE(grid) << grid.error().text;
     EXPECT_EQ(grid->size(), glm::uvec3(3, 1, 2));
@@ -204,7 +204,7 @@ TEST_F(GridRead, MutatedFilesGiveAGridOrAnError) {
     const BitGrid grid = test::randomGrid(test::boxOf(counts, {1, 1, 1}), counts, Axis::Z);
     for (const char* name : {"grid.npy", "grid.binvox"}) {
         ASSERT_TRUE(writeGrid(mFolder / name, grid));
-        const std::string original = test::readText(mFolder / name);
+        const std::string original = test::readBytes(mFolder / name);
         std::mt19937 random(5);
         int errors = 0;
         for (int i = 0; i < 3000; ++i) {
@@ -231,7 +231,7 @@ TEST_F(GridRead, MutatedFilesGiveAGridOrAnError) {
             }
             // File systems flush a file that is cut and written again, which takes milliseconds.
             std::filesystem::remove(mFolder / name);
-            test::writeText(mFolder / name, mutated);
+            test::writeBytes(mFolder / name, mutated);
             const auto read = readGrid(mFolder / name);
             errors += !read;
             const std::size_t bytes = read ? read->words().size() * 4 : 0;

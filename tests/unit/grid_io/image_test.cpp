@@ -64,7 +64,7 @@ TEST(Png, HasAlphaOnlyWhereNeeded) {
     TemporaryFolder folder;
     for (const bool opaque : {true, false}) {
         ASSERT_TRUE(writePng(folder / "a.png", noise(300, 2, opaque)));
-        const std::string file = test::readText(folder / "a.png");
+        const std::string file = test::readBytes(folder / "a.png");
         ASSERT_GT(file.size(), 33u);
         EXPECT_EQ(file.substr(0, 8), "\x89PNG\r\n\x1a\n");
         EXPECT_EQ(headerNumber(file, 16), 300u);
@@ -88,7 +88,7 @@ TEST(Png, RefusesInconsistentImages) {
         ASSERT_FALSE(written);
         EXPECT_EQ(written.error().code, ErrorCode::InvalidArgument);
     }
-    EXPECT_EQ(folder.fileCount(), 0u);
+    EXPECT_EQ(folder.names().size(), 0u);
     EXPECT_EQ(writePng(folder / "nowhere/a.png", noise(2, 2, true)).error().code,
               ErrorCode::NotFound);
 }
@@ -96,14 +96,14 @@ TEST(Png, RefusesInconsistentImages) {
 TEST(Png, NamesWhatIsWrongWithAFile) {
     TemporaryFolder folder;
     ASSERT_TRUE(writePng(folder / "good.png", noise(64, 64, true)));
-    const std::string good = test::readText(folder / "good.png");
+    const std::string good = test::readBytes(folder / "good.png");
     EXPECT_EQ(readPng(folder / "none.png").error().code, ErrorCode::NotFound);
     const std::string same = withSize(good, "\x00\x00\x00\x40\x00\x00\x00\x40"s);
     ASSERT_TRUE(same == good);
     const std::string huge = withSize(good, "\x00\x0f\x00\x00\x00\x0f\x00\x00"s);
     for (const std::string& content :
          {""s, "text"s, good.substr(0, 20), good.substr(0, good.size() / 2), huge}) {
-        test::writeText(folder / "bad.png", content);
+        test::writeBytes(folder / "bad.png", content);
         const auto image = readPng(folder / "bad.png");
         ASSERT_FALSE(image) << content.size();
         EXPECT_EQ(image.error().code, ErrorCode::InvalidFile) << image.error().text;

@@ -1,4 +1,5 @@
 #include "mesh_samples.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -233,14 +234,7 @@ TEST(MeshErrors, Off) {
 
 class MeshFileErrors : public testing::Test {
 protected:
-    void SetUp() override {
-        std::filesystem::remove_all(mFolder);
-        std::filesystem::create_directories(mFolder);
-    }
-    void TearDown() override { std::filesystem::remove_all(mFolder); }
-
-    const std::filesystem::path mFolder =
-        std::filesystem::path(testing::TempDir()) / "lamina_mesh_errors_test";
+    const test::TemporaryFolder mFolder;
 };
 
 TEST_F(MeshFileErrors, NameTheFile) {

@@ -1,10 +1,8 @@
 #include "mesh_samples.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
 
 namespace lamina {
 namespace {
@@ -276,11 +274,9 @@ TEST(MeshFile, ProgressRisesAndCancels) {
 }
 
 TEST(MeshFile, ReadsFromDiskByExtension) {
-    const std::filesystem::path folder =
-        std::filesystem::path(testing::TempDir()) / "lamina_mesh_file_test";
-    std::filesystem::create_directories(folder);
+    const test::TemporaryFolder folder;
     const auto write = [&](const std::string& name, const std::string& content) {
-        std::ofstream(folder / name, std::ios::binary) << content;
+        test::writeBytes(folder / name, content);
         return folder / name;
     };
     expectCube(readMesh(write("cube.obj", cubeObj())));
@@ -301,7 +297,6 @@ TEST(MeshFile, ReadsFromDiskByExtension) {
     const auto large = readMesh(folder / "cube.obj", options);
     ASSERT_FALSE(large);
     EXPECT_EQ(large.error().code, ErrorCode::OutOfMemory);
-    std::filesystem::remove_all(folder);
 }
 
 } // namespace

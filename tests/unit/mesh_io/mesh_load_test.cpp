@@ -1,4 +1,5 @@
 #include "mesh_samples.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <lamina/mesh_io/mesh_report.hpp>
 
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <thread>
 
@@ -42,29 +42,14 @@ std::string torusPly(unsigned n) {
     return out;
 }
 
-class TempFolder {
-public:
-    explicit TempFolder(const std::string& name)
-        : mPath(std::filesystem::path(testing::TempDir()) / name) {
-        std::filesystem::create_directories(mPath);
-    }
-    ~TempFolder() { std::filesystem::remove_all(mPath); }
-    std::filesystem::path write(const std::string& name, const std::string& content) const {
-        std::ofstream(mPath / name, std::ios::binary) << content;
-        return mPath / name;
-    }
-
-private:
-    std::filesystem::path mPath;
-};
-
 double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 TEST(MeshLoad, AMillionTrianglesInWellUnderASecond) {
-    const TempFolder folder("lamina_mesh_load_million");
-    const std::filesystem::path file = folder.write("torus.ply", torusPly(708));
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "torus.ply";
+    test::writeBytes(file, torusPly(708));
     const auto start = std::chrono::steady_clock::now();
     const Result<TriangleMesh> mesh = readMesh(file);
     const double seconds = secondsSince(start);
@@ -86,15 +71,19 @@ TEST(MeshLoad, AMillionTrianglesInWellUnderASecond) {
 }
 
 TEST(MeshLoad, FromEightThreadsAtOnce) {
-    const TempFolder folder("lamina_mesh_load_threads");
+    const test::TemporaryFolder folder;
+    const auto write = [&](const std::string& name, const std::string& content) {
+        test::writeBytes(folder / name, content);
+        return folder / name;
+    };
     const std::vector<std::filesystem::path> files = {
-        folder.write("a.ply", torusPly(60)),
-        folder.write("b.ply", samples::cubeAsciiPly()),
-        folder.write("c.obj", samples::cubeObj()),
-        folder.write("d.off", samples::cubeOff()),
-        folder.write("e.stl", samples::cubeAsciiStl()),
-        folder.write("f.stl", samples::cubeBinaryStl()),
-        folder.write("g.obj", "v 0 0 0\nf 1 2 3\n"),
+        write("a.ply", torusPly(60)),
+        write("b.ply", samples::cubeAsciiPly()),
+        write("c.obj", samples::cubeObj()),
+        write("d.off", samples::cubeOff()),
+        write("e.stl", samples::cubeAsciiStl()),
+        write("f.stl", samples::cubeBinaryStl()),
+        write("g.obj", "v 0 0 0\nf 1 2 3\n"),
     };
     const std::vector<std::size_t> triangles = {7200, 12, 12, 12, 12, 12, 0};
     std::vector<int> mistakes(8, 0);

@@ -17,7 +17,7 @@ class TemporaryFolder {
 public:
     TemporaryFolder() {
         std::string pattern =
-            (std::filesystem::temp_directory_path() / "lamina-tool-XXXXXX").string();
+            (std::filesystem::temp_directory_path() / "lamina-test-XXXXXX").string();
         if (mkdtemp(pattern.data()) == nullptr)
             ADD_FAILURE() << "no temporary folder";
         mPath = pattern;
@@ -30,8 +30,8 @@ public:
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
     [[nodiscard]] const std::filesystem::path& path() const { return mPath; }
-    [[nodiscard]] std::string operator/(const std::string& name) const {
-        return (mPath / name).string();
+    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+        return mPath / name;
     }
     /// Names of all entries, hidden ones too, sorted.
     [[nodiscard]] std::vector<std::string> names() const {
@@ -46,12 +46,12 @@ private:
     std::filesystem::path mPath;
 };
 
-inline std::string readBytes(const std::string& file) {
+inline std::string readBytes(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-inline void writeBytes(const std::string& file, const std::string& bytes) {
+inline void writeBytes(const std::filesystem::path& file, const std::string& bytes) {
     std::ofstream(file, std::ios::binary) << bytes;
 }
 
