@@ -102,4 +102,15 @@ void report(benchmark::State& state, const TriangleMesh& mesh, const GridTransfo
     state.counters["bytes"] = static_cast<double>(bytes);
 }
 
+void registerMethod(const std::string& name, std::function<Result<void>(benchmark::State&)> body) {
+    benchmark::RegisterBenchmark(name.c_str(),
+                                 [body = std::move(body)](benchmark::State& state) {
+                                     if (auto done = body(state); !done)
+                                         state.SkipWithError(done.error().text.c_str());
+                                 })
+        ->UseRealTime()
+        ->MeasureProcessCPUTime()
+        ->Unit(benchmark::kMillisecond);
+}
+
 } // namespace lamina::bench

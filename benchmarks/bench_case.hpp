@@ -55,6 +55,9 @@ struct Case {
 void report(benchmark::State& state, const TriangleMesh& mesh, const GridTransform& grid,
             std::uint64_t setVoxels, std::uint64_t bytes);
 
+/// Registers a benchmark in wall and processor time; an error of `body` skips it with its text.
+void registerMethod(const std::string& name, std::function<Result<void>(benchmark::State&)> body);
+
 /// Each registers benchmarks of one method, named "mesh/resolution/method".
 void registerVoxelizers(const Device& device, const Case& what);
 void registerAttributes(const Device& device, const Case& what);

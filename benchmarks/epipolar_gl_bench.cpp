@@ -1,5 +1,6 @@
 #include "bench_case.hpp"
 #include "gl_timing.hpp"
+#include "uploaded_mesh.hpp"
 
 #include <lamina/voxelize/epipolar_grid.hpp>
 #include <lamina/voxelize/epipolar_voxelizer.hpp>
@@ -43,24 +44,21 @@ Result<std::vector<EpipolarTransform>> makeTransforms(const Box3& box, const Set
 
 Result<void> run(benchmark::State& state, const Device& device,
                  const std::shared_ptr<NamedMesh>& mesh, const Setting& setting) {
-    auto loaded = mesh->get();
-    if (!loaded)
-        return loaded.error();
-    auto transforms = makeTransforms((*loaded)->bounds(), setting);
+    auto uploaded = upload(device, *mesh);
+    if (!uploaded)
+        return uploaded.error();
+    auto transforms = makeTransforms(uploaded->mesh->bounds(), setting);
     EpipolarVoxelizerDesc desc;
     desc.depthMapTexels = setting.voxels;
     auto voxelizer = EpipolarVoxelizer::create(device, desc);
-    auto buffers = MeshBuffers::upload(device, **loaded);
     auto grid = EpipolarGrid::create(device);
     if (!transforms)
         return transforms.error();
     if (!voxelizer)
         return voxelizer.error();
-    if (!buffers)
-        return buffers.error();
     if (!grid)
         return grid.error();
-    const GeometrySource sources[] = {buffers->view()};
+    const std::span<const GeometrySource> sources(&uploaded->source, 1);
     EpipolarStats stats;
     const auto voxelize = [&](bool scans) -> Result<void> {
         auto done = scans ? voxelizer->voxelize(sources, *transforms, *grid)
@@ -81,7 +79,7 @@ Result<void> run(benchmark::State& state, const Device& device,
     using benchmark::Counter;
     const double voxels = std::pow(setting.voxels, 3.0) * setting.lights;
     state.counters["voxels/s"] = Counter(voxels, Counter::kIsIterationInvariantRate);
-    const auto triangles = static_cast<double>((*loaded)->triangles.size());
+    const auto triangles = static_cast<double>(uploaded->mesh->triangles.size());
     state.counters["triangles"] = triangles;
     if (setting.stage != Stage::Scan)
         state.counters["triangles/s"] = Counter(triangles, Counter::kIsIterationInvariantRate);
@@ -99,7 +97,7 @@ void registerEpipolar(const Device& device, const std::shared_ptr<NamedMesh>& me
           Setting{"1 light, 512 cubed/scan", 1, 512, Stage::Scan},
           Setting{"64 lights, 128 cubed/depth maps, rectify and scan", 64, 128, Stage::All},
           Setting{"256 lights, 128 cubed/scan", 256, 128, Stage::Scan}})
-        registerGl(
+        registerMethod(
             mesh->name + "/epipolar, " + setting.name,
             [=, &device](benchmark::State& state) { return run(state, device, mesh, setting); });
 }

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <optional>
-#include <utility>
 
 namespace lamina::bench {
 namespace {
@@ -86,17 +85,6 @@ Result<void> measure(benchmark::State& state, const Device& device,
         state.counters["GPU ms"] =
             benchmark::Counter(*seconds * 1e3, benchmark::Counter::kAvgIterations);
     return done;
-}
-
-void registerGl(const std::string& name, std::function<Result<void>(benchmark::State&)> body) {
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [body = std::move(body)](benchmark::State& state) {
-                                     if (auto done = body(state); !done)
-                                         state.SkipWithError(done.error().text.c_str());
-                                 })
-        ->UseRealTime()
-        ->MeasureProcessCPUTime()
-        ->Unit(benchmark::kMillisecond);
 }
 
 } // namespace lamina::bench

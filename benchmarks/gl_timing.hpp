@@ -6,7 +6,6 @@
 #include <benchmark/benchmark.h>
 
 #include <functional>
-#include <string>
 
 namespace lamina::bench {
 
@@ -14,8 +13,5 @@ namespace lamina::bench {
 /// iteration, waiting for the GL after each. Adds "GPU ms" where the GL has a timer that works.
 [[nodiscard]] Result<void> measure(benchmark::State& state, const Device& device,
                                    const std::function<Result<void>()>& work);
-
-/// Registers a benchmark in wall and processor time; an error of `body` skips it with its text.
-void registerGl(const std::string& name, std::function<Result<void>(benchmark::State&)> body);
 
 } // namespace lamina::bench

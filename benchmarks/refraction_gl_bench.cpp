@@ -3,6 +3,7 @@
 
 #include "bench_case.hpp"
 #include "gl_timing.hpp"
+#include "uploaded_mesh.hpp"
 
 #include "gl/device_state.hpp"
 #include "gl/objects.hpp"
@@ -32,20 +33,16 @@ View viewOf(const Box3& bounds) {
 
 Result<void> runThickness(benchmark::State& state, const Device& device, NamedMesh& named,
                           const ThicknessDesc& desc) {
-    auto mesh = named.get();
-    if (!mesh)
-        return mesh.error();
-    auto buffers = MeshBuffers::upload(device, **mesh);
-    if (!buffers)
-        return buffers.error();
+    auto uploaded = upload(device, named);
+    if (!uploaded)
+        return uploaded.error();
     auto map = ThicknessMap::create(device, desc);
     if (!map)
         return map.error();
-    const GeometrySource source = buffers->view();
-    const Box3 bounds = (*mesh)->bounds();
+    const Box3 bounds = uploaded->mesh->bounds();
     const View view = viewOf(bounds);
     return measure(state, device, [&]() -> Result<void> {
-        const auto built = map->build({&source, 1}, view, bounds);
+        const auto built = map->build({&uploaded->source, 1}, view, bounds);
         return built ? Result<void>{} : built.error();
     });
 }
@@ -93,12 +90,9 @@ enum class Stage { Prepare, Apply };
 
 Result<void> runRefraction(benchmark::State& state, const Device& device, NamedMesh& named,
                            RefractionModel model, Stage stage) {
-    auto mesh = named.get();
-    if (!mesh)
-        return mesh.error();
-    auto buffers = MeshBuffers::upload(device, **mesh);
-    if (!buffers)
-        return buffers.error();
+    auto uploaded = upload(device, named);
+    if (!uploaded)
+        return uploaded.error();
     RefractionDesc desc;
     desc.model = model;
     auto refraction = Refraction::create(device, desc);
@@ -108,10 +102,9 @@ Result<void> runRefraction(benchmark::State& state, const Device& device, NamedM
     if (!environment)
         return environment.error();
     refraction->setEnvironment(*environment);
-    const GeometrySource source = buffers->view();
     Material glass;
     glass.refractiveIndex = 1.5f;
-    const RefractionObject object{{&source, 1}, {&glass, 1}, (*mesh)->bounds()};
+    const RefractionObject object{{&uploaded->source, 1}, {&glass, 1}, uploaded->mesh->bounds()};
     const View view = viewOf(object.bounds);
     const auto prepare = [&]() -> Result<void> {
         const auto prepared = refraction->prepare(object, view);
@@ -138,11 +131,11 @@ void registerRefraction(const Device& device, const std::shared_ptr<NamedMesh>& 
     const std::string name = mesh->name + "/512/lamina ";
     for (const std::uint32_t slices : {32u, 128u, 1024u})
         for (const auto method : {IntegralMethod::Arithmetic, IntegralMethod::Table})
-            registerGl(name + "thickness " + std::to_string(slices) +
-                           (method == IntegralMethod::Table ? " by table" : " by arithmetic"),
-                       [=, &device](benchmark::State& state) {
-                           return runThickness(state, device, *mesh, {slices, method});
-                       });
+            registerMethod(name + "thickness " + std::to_string(slices) +
+                               (method == IntegralMethod::Table ? " by table" : " by arithmetic"),
+                           [=, &device](benchmark::State& state) {
+                               return runThickness(state, device, *mesh, {slices, method});
+                           });
     struct Row {
         const char* name;
         RefractionModel model;
@@ -153,7 +146,7 @@ void registerRefraction(const Device& device, const std::shared_ptr<NamedMesh>& 
           Row{"refraction integral", RefractionModel::VolumeIntegral, Stage::Apply},
           Row{"refraction two surfaces", RefractionModel::TwoSurfaces, Stage::Apply},
           Row{"refraction many surfaces", RefractionModel::ManySurfaces, Stage::Apply}})
-        registerGl(name + row.name, [=, &device](benchmark::State& state) {
+        registerMethod(name + row.name, [=, &device](benchmark::State& state) {
             return runRefraction(state, device, *mesh, row.model, row.stage);
         });
 }

@@ -1,5 +1,6 @@
 #include "bench_case.hpp"
 #include "gl_timing.hpp"
+#include "uploaded_mesh.hpp"
 
 #include <lamina/voxelize/geometry_source.hpp>
 #include <lamina/voxelize/volume_voxelizer.hpp>
@@ -24,25 +25,18 @@ VolumeLayout layoutOf(VolumeFormat count, VolumeFormat normal, VolumeFormat colo
 
 Result<void> run(benchmark::State& state, const Device& device, const Case& what,
                  const VolumeLayout& layout) {
-    auto mesh = what.mesh->get();
-    if (!mesh)
-        return mesh.error();
-    auto transform = benchGrid(**mesh, what.resolution);
+    auto uploaded = upload(device, what);
     auto voxelizer = VolumeVoxelizer::create(device);
-    auto buffers = MeshBuffers::upload(device, **mesh);
     auto volume = VolumeGrid::create(device, layout);
-    if (!transform)
-        return transform.error();
+    if (!uploaded)
+        return uploaded.error();
     if (!voxelizer)
         return voxelizer.error();
-    if (!buffers)
-        return buffers.error();
     if (!volume)
         return volume.error();
-    const GeometrySource sources[] = {buffers->view()};
     VolumeStats stats;
     auto measured = measure(state, device, [&]() -> Result<void> {
-        auto done = voxelizer->voxelize(sources, {}, *transform, *volume);
+        auto done = voxelizer->voxelize({&uploaded->source, 1}, {}, uploaded->transform, *volume);
         if (!done)
             return done.error();
         stats = *done;
@@ -54,7 +48,8 @@ Result<void> run(benchmark::State& state, const Device& device, const Case& what
     if (!data)
         return data.error();
     const auto set = std::ranges::count_if(data->counts, [](std::uint32_t n) { return n != 0; });
-    report(state, **mesh, *transform, static_cast<std::uint64_t>(set), stats.volumeBytes);
+    report(state, *uploaded->mesh, uploaded->transform, static_cast<std::uint64_t>(set),
+           stats.volumeBytes);
     state.counters["passes"] = stats.passes;
     return {};
 }
@@ -66,10 +61,10 @@ void registerVolumes(const Device& device, const Case& what) {
     for (const Row& row : {Row{"count R8", layoutOf(R8, None, None)},
                            Row{"count R32UI", layoutOf(R32UI, None, None)},
                            Row{"count, normal, colour", layoutOf(R32UI, RGBA16F, RGBA8)}})
-        registerGl(what.describe() + "/lamina volume " + row.name,
-                   [=, &device, layout = row.layout](benchmark::State& state) {
-                       return run(state, device, what, layout);
-                   });
+        registerMethod(what.describe() + "/lamina volume " + row.name,
+                       [=, &device, layout = row.layout](benchmark::State& state) {
+                           return run(state, device, what, layout);
+                       });
 }
 
 } // namespace lamina::bench

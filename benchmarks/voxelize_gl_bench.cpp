@@ -41,7 +41,7 @@ Result<void> run(benchmark::State& state, const Device& device, const TriangleMe
 void registerRun(const Device& device, const std::string& name, std::shared_ptr<NamedMesh> mesh,
                  const VoxelizerDesc& desc,
                  std::function<Result<GridTransform>(const TriangleMesh&)> makeGrid) {
-    registerGl(name, [=, &device](benchmark::State& state) -> Result<void> {
+    registerMethod(name, [=, &device](benchmark::State& state) -> Result<void> {
         auto loaded = mesh->get();
         if (!loaded)
             return loaded.error();

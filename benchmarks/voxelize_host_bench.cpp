@@ -35,15 +35,8 @@ Result<void> run(benchmark::State& state, const Case& what) {
 } // namespace
 
 void registerHostOverlap(const Case& what) {
-    const std::string name = what.describe() + "/host overlap, 2 threads";
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [what](benchmark::State& state) {
-                                     if (auto done = run(state, what); !done)
-                                         state.SkipWithError(done.error().text.c_str());
-                                 })
-        ->UseRealTime()
-        ->MeasureProcessCPUTime()
-        ->Unit(benchmark::kMillisecond);
+    registerMethod(what.describe() + "/host overlap, 2 threads",
+                   [what](benchmark::State& state) { return run(state, what); });
 }
 
 } // namespace lamina::bench

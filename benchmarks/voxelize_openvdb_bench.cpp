@@ -48,15 +48,8 @@ Result<void> run(benchmark::State& state, const Case& what) {
 
 void registerOpenVdb(const Case& what) {
     openvdb::initialize();
-    const std::string name = what.describe() + "/OpenVDB meshToVolume, all cores";
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [what](benchmark::State& state) {
-                                     if (auto done = run(state, what); !done)
-                                         state.SkipWithError(done.error().text.c_str());
-                                 })
-        ->UseRealTime()
-        ->MeasureProcessCPUTime()
-        ->Unit(benchmark::kMillisecond);
+    registerMethod(what.describe() + "/OpenVDB meshToVolume, all cores",
+                   [what](benchmark::State& state) { return run(state, what); });
 }
 
 } // namespace lamina::bench
