@@ -41,16 +41,6 @@ struct Settings {
     int width = 1280, height = 960;
 };
 
-constexpr const char* kVertexShader = R"(#version 450
-layout(location = 0) uniform mat4 worldToClip;
-layout(location = 0) in vec3 position;
-out vec3 world;
-void main() {
-    world = position;
-    gl_Position = worldToClip * vec4(position, 1.0);
-}
-)";
-
 // Follows lamina/parity.glsl with three sprites: two clip shapes and the tower.
 constexpr const char* kFragmentShader = R"(
 #line 1
@@ -127,7 +117,7 @@ GLuint makeEngineProgram(const HostGl& gl, const Settings& settings, const glm::
                                  check(lamina::shaderSource("lamina/parity.glsl")) +
                                  kFragmentShader;
     const GLuint program = example::makeProgram(
-        gl, {{GL_VERTEX_SHADER, kVertexShader}, {GL_FRAGMENT_SHADER, fragment}});
+        gl, {{GL_VERTEX_SHADER, example::kWorldVertexShader}, {GL_FRAGMENT_SHADER, fragment}});
     const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     const glm::mat4 camera = glm::perspective(glm::radians(38.0f), aspect, 0.5f, 150.0f) *
                              glm::lookAt(eye, glm::vec3(0.0f, 3.7f, 0.0f), glm::vec3(0, 1, 0));

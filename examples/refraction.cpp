@@ -25,9 +25,9 @@
 namespace {
 
 using example::check;
+using example::EngineMesh;
 using example::HostGl;
 using example::Stage;
-using example::StageMesh;
 using lamina::RefractionModel;
 
 constexpr double kGlass = 1.5;
@@ -125,7 +125,7 @@ lamina::Image drawMaterials(const Studio& studio) {
     materials[4].reflection = 0.0f;
 
     const lamina::TriangleMesh mesh = makeFigure(studio.settings);
-    const StageMesh uploaded = example::uploadWithNormals(studio.gl, mesh);
+    const EngineMesh uploaded = example::upload(studio.gl, mesh);
     const auto count = static_cast<float>(materials.size());
     const Stage stage =
         example::makeStage(studio.gl, studio.frame(4.0), {0.0, 0.7, 9.6}, {0.0, -0.05, 0.0}, 16.5);
@@ -157,12 +157,12 @@ lamina::Image drawMaterials(const Studio& studio) {
 /// Coloured balls behind a clear and a frosted figure: what the engine has drawn is seen through.
 lamina::Image drawFrosted(const Studio& studio) {
     const lamina::TriangleMesh mesh = makeFigure(studio.settings);
-    const StageMesh uploaded = example::uploadWithNormals(studio.gl, mesh);
+    const EngineMesh uploaded = example::upload(studio.gl, mesh);
     lamina::TriangleMesh ball;
     example::addRevolved(ball, example::ballProfile(0.32f, 40), 64,
                          [](const glm::vec3& p) { return p; });
     example::addNormals(ball);
-    const StageMesh balls = example::uploadWithNormals(studio.gl, ball);
+    const EngineMesh balls = example::upload(studio.gl, ball);
     std::vector<lamina::Image> pictures;
     for (const float blur : {0.0f, 0.12f, 0.35f}) {
         const Stage stage = example::makeStage(studio.gl, studio.frame(1.1), {0.3, 0.9, 4.6},
@@ -244,7 +244,7 @@ void traceVase(const Studio& studio, const Stage& stage, const glm::vec3& absorp
 lamina::Image drawVase(const Studio& studio) {
     const glm::vec3 absorption(0.9f, 0.25f, 0.15f);
     const lamina::TriangleMesh mesh = example::makeRevolvedMesh(example::vaseProfile(), 192);
-    const StageMesh uploaded = example::uploadWithNormals(studio.gl, mesh);
+    const EngineMesh uploaded = example::upload(studio.gl, mesh);
     std::vector<lamina::Image> pictures;
     for (const int i : {0, 1, 2}) {
         const Stage stage = example::makeStage(studio.gl, studio.frame(0.8), {0.6, 0.9, 4.2},
@@ -284,8 +284,8 @@ lamina::Image drawNested(const Studio& studio) {
     lamina::TriangleMesh figure = makeFigure(studio.settings);
     for (glm::vec3& position : figure.positions)
         position *= 0.55f;
-    const StageMesh outer = example::uploadWithNormals(studio.gl, ball);
-    const StageMesh inner = example::uploadWithNormals(studio.gl, figure);
+    const EngineMesh outer = example::upload(studio.gl, ball);
+    const EngineMesh inner = example::upload(studio.gl, figure);
     lamina::Material materials[2];
     materials[0].refractiveIndex = 1.15f;
     materials[1].refractiveIndex = 1.6f;
@@ -332,7 +332,7 @@ void deform(inout vec3 position, inout vec3 normal) {
 /// Geometry that exists only on the GPU, frame by frame.
 lamina::Image drawAnimated(const Studio& studio) {
     const lamina::TriangleMesh mesh = makeFigure(studio.settings);
-    const StageMesh uploaded = example::uploadWithNormals(studio.gl, mesh);
+    const EngineMesh uploaded = example::upload(studio.gl, mesh);
     float time = 0.0f;
     lamina::DrawSource draws;
     draws.vertexShader = std::string(kTwist) + R"(
@@ -347,9 +347,7 @@ LaminaVertex laminaVertex() {
 )";
     draws.draw = [&](const lamina::DrawContext& context) {
         studio.gl.ProgramUniform1f(context.program, 2, time);
-        studio.gl.BindVertexArray(uploaded.vertexArray);
-        studio.gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(uploaded.view.indexCount),
-                               GL_UNSIGNED_INT, nullptr);
+        example::draw(studio.gl, uploaded);
     };
     const lamina::GeometrySource source = draws;
     auto refraction = studio.refraction(RefractionModel::VolumeIntegral);

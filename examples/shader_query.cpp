@@ -30,17 +30,6 @@ constexpr int kWidth = 1280, kHeight = 800;
 const glm::vec3 kToSun = glm::normalize(glm::vec3(-0.45f, 1.0f, -0.62f));
 const glm::vec3 kEye(-1.2f, 4.0f, 14.2f);
 
-constexpr const char* kVertexShader = R"(
-#version 450
-layout(location = 0) uniform mat4 worldToClip;
-layout(location = 0) in vec3 position;
-out vec3 world;
-void main() {
-    world = position;
-    gl_Position = worldToClip * vec4(position, 1.0);
-}
-)";
-
 // Follows "#version 450" and lamina/grid.glsl with two grids.
 constexpr const char* kFragmentShader = R"(
 #line 1
@@ -163,7 +152,7 @@ GLuint makeEngineProgram(const HostGl& gl) {
     const std::string fragment = "#version 450\n#define LAMINA_GRID_COUNT 2\n" +
                                  check(lamina::shaderSource("lamina/grid.glsl")) + kFragmentShader;
     const GLuint program = example::makeProgram(
-        gl, {{GL_VERTEX_SHADER, kVertexShader + 1}, {GL_FRAGMENT_SHADER, fragment}});
+        gl, {{GL_VERTEX_SHADER, example::kWorldVertexShader}, {GL_FRAGMENT_SHADER, fragment}});
     const glm::mat4 camera =
         glm::perspective(glm::radians(37.0f), static_cast<float>(kWidth) / kHeight, 0.5f, 120.0f) *
         glm::lookAt(kEye, glm::vec3(0.5f, 2.55f, 0.0f), glm::vec3(0, 1, 0));

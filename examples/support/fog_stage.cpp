@@ -10,16 +10,6 @@
 namespace example {
 namespace {
 
-constexpr const char* kVertexShader = R"(#version 450
-layout(location = 0) uniform mat4 worldToClip;
-layout(location = 0) in vec3 position;
-out vec3 world;
-void main() {
-    world = position;
-    gl_Position = worldToClip * vec4(position, 1.0);
-}
-)";
-
 constexpr const char* kFragmentShader = R"(#version 450
 layout(location = 4) uniform vec3 albedo;
 layout(location = 5) uniform vec3 glow;
@@ -62,32 +52,13 @@ FogStage::FogStage()
     , mGl([this](const char* name) { return mContext.getProcAddress(name); })
     , mDevice(makeDevice(mContext))
     , mProgram(makeProgram(
-          mGl, {{GL_VERTEX_SHADER, kVertexShader}, {GL_FRAGMENT_SHADER, kFragmentShader}})) {
+          mGl, {{GL_VERTEX_SHADER, kWorldVertexShader}, {GL_FRAGMENT_SHADER, kFragmentShader}})) {
     mGl.CreateFramebuffers(1, &mFramebuffer);
 }
 
-FogStage::Part FogStage::upload(const lamina::TriangleMesh& mesh, lamina::MeshView& view) {
-    view.vertexBuffer = makeBuffer(mGl, std::as_bytes(std::span(mesh.positions)));
-    view.vertexCount = static_cast<std::uint32_t>(mesh.positions.size());
-    view.indexBuffer = makeBuffer(mGl, std::as_bytes(std::span(mesh.triangles)));
-    view.indexType = lamina::IndexType::UInt32;
-    view.indexCount = static_cast<std::uint32_t>(3 * mesh.triangles.size());
-    Part part;
-    part.indexCount = static_cast<std::int32_t>(view.indexCount);
-    mGl.CreateVertexArrays(1, &part.vertexArray);
-    mGl.VertexArrayVertexBuffer(part.vertexArray, 0, view.vertexBuffer, 0, sizeof(glm::vec3));
-    mGl.VertexArrayElementBuffer(part.vertexArray, view.indexBuffer);
-    mGl.EnableVertexArrayAttrib(part.vertexArray, 0);
-    mGl.VertexArrayAttribFormat(part.vertexArray, 0, 3, GL_FLOAT, GL_FALSE, 0);
-    mGl.VertexArrayAttribBinding(part.vertexArray, 0, 0);
-    return part;
-}
-
 void FogStage::add(const lamina::TriangleMesh& mesh, const glm::vec3& albedo) {
-    lamina::MeshView view;
-    mParts.push_back(upload(mesh, view));
-    mParts.back().albedo = albedo;
-    mCasters.emplace_back(view);
+    mParts.push_back({.mesh = upload(mGl, mesh), .albedo = albedo});
+    mCasters.emplace_back(mParts.back().mesh.view);
 }
 
 void FogStage::addGlow(const glm::vec3 (&corners)[4], const glm::vec3& radiance,
@@ -95,10 +66,7 @@ void FogStage::addGlow(const glm::vec3 (&corners)[4], const glm::vec3& radiance,
     lamina::TriangleMesh mesh;
     mesh.positions.assign(std::begin(corners), std::end(corners));
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    lamina::MeshView view;
-    mGlows.push_back(upload(mesh, view));
-    mGlows.back().glow = radiance;
-    mGlows.back().texture = texture;
+    mGlows.push_back({.mesh = upload(mGl, mesh), .glow = radiance, .texture = texture});
     const glm::vec3 u = corners[1] - corners[0];
     const glm::vec3 v = corners[3] - corners[0];
     const glm::vec3 rows[2] = {u / glm::dot(u, u), v / glm::dot(v, v)};
@@ -159,8 +127,7 @@ void FogStage::draw(const glm::dmat4& worldToClip, const glm::uvec2& size) {
             mGl.ProgramUniform3fv(mProgram, 5, 1, glm::value_ptr(part.glow));
             mGl.ProgramUniform1i(mProgram, 7, part.texture != 0 ? 1 : 0);
             mGl.BindTextureUnit(0, part.texture);
-            mGl.BindVertexArray(part.vertexArray);
-            mGl.DrawElements(GL_TRIANGLES, part.indexCount, GL_UNSIGNED_INT, nullptr);
+            example::draw(mGl, part.mesh);
         }
     mView = {};
     mView.worldToClip = worldToClip;

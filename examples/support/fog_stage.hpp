@@ -1,6 +1,6 @@
 #pragma once
 
-#include "host_gl.hpp"
+#include "engine_mesh.hpp"
 
 #include <lamina/area_light/area_light.hpp>
 #include <lamina/core/triangle_mesh.hpp>
@@ -45,13 +45,11 @@ public:
 
 private:
     struct Part {
-        std::uint32_t vertexArray = 0;
-        std::int32_t indexCount = 0;
+        EngineMesh mesh;
         glm::vec3 albedo{0.0f};
         glm::vec3 glow{0.0f};
         std::uint32_t texture = 0;
     };
-    [[nodiscard]] Part upload(const lamina::TriangleMesh& mesh, lamina::MeshView& view);
     [[nodiscard]] lamina::Image toImage(std::uint32_t texture) const;
 
     lamina::headless::Context mContext;

@@ -85,7 +85,7 @@ GLuint programOf(const HostGl& gl, const std::string& vertex, const char* fragme
 }
 
 void drawMesh(const HostGl& gl, const Stage& stage, GLuint frame, GLuint program,
-              const StageMesh& mesh, const glm::mat4& model) {
+              const EngineMesh& mesh, const glm::mat4& model) {
     const glm::mat4 worldToClip(stage.view.worldToClip);
     gl.ProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, glm::value_ptr(worldToClip));
     gl.ProgramUniformMatrix4fv(program, 1, 1, GL_FALSE, glm::value_ptr(model));
@@ -94,35 +94,12 @@ void drawMesh(const HostGl& gl, const Stage& stage, GLuint frame, GLuint program
                 static_cast<GLsizei>(stage.view.size.y));
     gl.Enable(GL_DEPTH_TEST);
     gl.UseProgram(program);
-    gl.BindVertexArray(mesh.vertexArray);
-    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.view.indexCount), GL_UNSIGNED_INT,
-                    nullptr);
+    draw(gl, mesh);
     gl.Disable(GL_DEPTH_TEST);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }
 
 } // namespace
-
-StageMesh uploadWithNormals(const HostGl& gl, const lamina::TriangleMesh& mesh) {
-    StageMesh made;
-    made.view.vertexBuffer = makeBuffer(gl, std::as_bytes(std::span(mesh.positions)));
-    made.view.vertexCount = static_cast<std::uint32_t>(mesh.positions.size());
-    made.view.indexBuffer = makeBuffer(gl, std::as_bytes(std::span(mesh.triangles)));
-    made.view.indexType = lamina::IndexType::UInt32;
-    made.view.indexCount = static_cast<std::uint32_t>(3 * mesh.triangles.size());
-    made.view.normals = {makeBuffer(gl, std::as_bytes(std::span(mesh.normals))), 0,
-                         sizeof(glm::vec3)};
-    gl.CreateVertexArrays(1, &made.vertexArray);
-    gl.VertexArrayElementBuffer(made.vertexArray, made.view.indexBuffer);
-    const GLuint buffers[] = {made.view.vertexBuffer, made.view.normals.buffer};
-    for (GLuint i = 0; i < 2; ++i) {
-        gl.VertexArrayVertexBuffer(made.vertexArray, i, buffers[i], 0, sizeof(glm::vec3));
-        gl.EnableVertexArrayAttrib(made.vertexArray, i);
-        gl.VertexArrayAttribFormat(made.vertexArray, i, 3, GL_FLOAT, GL_FALSE, 0);
-        gl.VertexArrayAttribBinding(made.vertexArray, i, i);
-    }
-    return made;
-}
 
 void addNormals(lamina::TriangleMesh& mesh) {
     mesh.normals.assign(mesh.positions.size(), glm::vec3(0.0f));
@@ -184,16 +161,17 @@ void beginStage(const HostGl& gl, const Stage& stage, GLuint environment) {
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }
 
-void drawOpaque(const HostGl& gl, const Stage& stage, const StageMesh& mesh, const glm::mat4& model,
-                const glm::vec3& albedo) {
+void drawOpaque(const HostGl& gl, const Stage& stage, const EngineMesh& mesh,
+                const glm::mat4& model, const glm::vec3& albedo) {
     const GLuint program =
         programOf(gl, std::string("#version 450\n") + kStill + kVertexMain, kOpaqueFragment);
     gl.ProgramUniform3fv(program, 3, 1, glm::value_ptr(albedo));
     drawMesh(gl, stage, stage.colorFrame, program, mesh, model);
 }
 
-void drawObject(const HostGl& gl, const Stage& stage, const StageMesh& mesh, const glm::mat4& model,
-                std::uint32_t object, const std::string& vertexStage, float time) {
+void drawObject(const HostGl& gl, const Stage& stage, const EngineMesh& mesh,
+                const glm::mat4& model, std::uint32_t object, const std::string& vertexStage,
+                float time) {
     const GLuint program =
         programOf(gl, "#version 450\n" + (vertexStage.empty() ? kStill : vertexStage) + kVertexMain,
                   kObjectFragment);

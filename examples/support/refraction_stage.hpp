@@ -1,11 +1,10 @@
 #pragma once
 
-#include "host_gl.hpp"
+#include "engine_mesh.hpp"
 
 #include <lamina/core/triangle_mesh.hpp>
 #include <lamina/gl/view.hpp>
 #include <lamina/grid_io/image.hpp>
-#include <lamina/voxelize/geometry_source.hpp>
 
 #include <glm/mat4x4.hpp>
 
@@ -15,19 +14,11 @@
 
 namespace example {
 
-/// The engine of the refraction example: its buffers of a mesh, with normals.
-struct StageMesh {
-    lamina::MeshView view;
-    GLuint vertexArray = 0; ///< Positions at location 0, normals at 1.
-};
-
-[[nodiscard]] StageMesh uploadWithNormals(const HostGl& gl, const lamina::TriangleMesh& mesh);
-
 /// Normals of the vertices: the mean of their triangles', by area.
 void addNormals(lamina::TriangleMesh& mesh);
 
-/// What the engine draws of a frame: an HDR picture with the sky, and the G-buffer of the objects
-/// that refract. Textures of view.size.
+/// What the engine draws of a frame of meshes with normals: an HDR picture with the sky, and the
+/// G-buffer of the objects that refract. Textures of view.size.
 struct Stage {
     lamina::View view;
     glm::dvec3 eye{0.0};
@@ -43,12 +34,13 @@ struct Stage {
 /// Paints the environment (a cube map) over the picture and clears the G-buffer.
 void beginStage(const HostGl& gl, const Stage& stage, GLuint environment);
 /// An opaque, lit mesh in the picture.
-void drawOpaque(const HostGl& gl, const Stage& stage, const StageMesh& mesh, const glm::mat4& model,
-                const glm::vec3& albedo);
+void drawOpaque(const HostGl& gl, const Stage& stage, const EngineMesh& mesh,
+                const glm::mat4& model, const glm::vec3& albedo);
 /// An object of the G-buffer. vertexStage: GLSL that moves a vertex: `void deform(inout vec3
 /// position, inout vec3 normal)`; empty: by `model`.
-void drawObject(const HostGl& gl, const Stage& stage, const StageMesh& mesh, const glm::mat4& model,
-                std::uint32_t object, const std::string& vertexStage = {}, float time = 0.0f);
+void drawObject(const HostGl& gl, const Stage& stage, const EngineMesh& mesh,
+                const glm::mat4& model, std::uint32_t object, const std::string& vertexStage = {},
+                float time = 0.0f);
 
 /// A linear HDR texture as a picture, 2 x 2 pixels averaged to one.
 [[nodiscard]] lamina::Image develop(const HostGl& gl, const Stage& stage, GLuint color);
