@@ -17,6 +17,7 @@
 #ifndef LAMINA_EPIPOLAR_GLSL
 #define LAMINA_EPIPOLAR_GLSL
 
+#include <lamina/bits.glsl>
 #include <lamina/shared/epipolar_block.glsl>
 
 #ifndef LAMINA_EPIPOLAR_BLOCK_BINDING
@@ -62,19 +63,14 @@ uvec4 laminaEpipolarBits(int vsv, ivec2 alphaTheta, int group) {
     return texelFetch(laminaEpipolarWords, ivec3(place + ivec2(laminaEpipolarSpaces[vsv].tile.xy), group), 0);
 }
 
-// One bit of 128. The component is chosen by comparisons: indexing compiles badly ([WD13] appendix A).
+// One bit of 128: is it in shadow?
 uint laminaEpipolarBit(uvec4 bits, int index) {
-    uvec2 pair = index < 64 ? bits.xy : bits.zw;
-    return ((index & 32) == 0 ? pair.x : pair.y) >> uint(index & 31) & 1u;
+    return laminaBit(bits, index);
 }
 
 // Number of bits set below `count` (clamped to [0, 128]).
 int laminaEpipolarCountBelow(uvec4 bits, int count) {
-    ivec4 counts = clamp(ivec4(count) - ivec4(0, 32, 64, 96), ivec4(0), ivec4(32));
-    // A shift by 32 is undefined: the full words are chosen by comparison.
-    uvec4 mask = mix((uvec4(1u) << uvec4(counts & 31)) - 1u, uvec4(0xffffffffu), equal(counts, ivec4(32)));
-    ivec4 sums = bitCount(bits & mask);
-    return sums.x + sums.y + sums.z + sums.w;
+    return laminaBitCount(bits & laminaMaskBelow(count));
 }
 
 // Is a voxel shadowed? Clamped to the volume.

@@ -20,6 +20,7 @@
 #ifndef LAMINA_GRID_GLSL
 #define LAMINA_GRID_GLSL
 
+#include <lamina/bits.glsl>
 #include <lamina/shared/grid_block.glsl>
 
 #ifndef LAMINA_GRID_COUNT
@@ -205,27 +206,11 @@ uvec4 laminaColumnBits(int grid, ivec2 column, int group) {
     return laminaFetchWord(grid, ivec3(column, group));
 }
 
-// A mask of the bits below `bit` in a 128-bit word; all of them from 128 on, none up to 0.
-uvec4 laminaMaskBelow(int bit) {
-    ivec4 count = clamp(ivec4(bit) - ivec4(0, 32, 64, 96), ivec4(0), ivec4(32));
-    // A shift by 32 is undefined: the full words are chosen by comparison.
-    return mix((uvec4(1u) << uvec4(count & 31)) - 1u, uvec4(0xffffffffu), equal(count, ivec4(32)));
-}
-
-// Number of set bits.
-int laminaBitCount(uvec4 bits) {
-    ivec4 counts = bitCount(bits);
-    return counts.x + counts.y + counts.z + counts.w;
-}
-
 // Is this voxel set? False outside the grid.
 bool laminaVoxelSet(int grid, ivec3 voxel) {
     if (voxel.z < 0)
         return false;
-    uvec4 bits = laminaColumnBits(grid, voxel.xy, voxel.z >> 7);
-    int word = (voxel.z >> 5) & 3;
-    uint chosen = word < 2 ? (word == 0 ? bits.x : bits.y) : (word == 2 ? bits.z : bits.w);
-    return ((chosen >> uint(voxel.z & 31)) & 1u) != 0u;
+    return laminaBit(laminaColumnBits(grid, voxel.xy, voxel.z >> 7), voxel.z & 127) != 0u;
 }
 
 // Set voxels of a column in slices nearer than `slice` (clamped to the grid's slices).

@@ -12,6 +12,6 @@ void main() {
     if (solid == surface && solid == uvec4(0u))
         return;
     laminaTexels[index] = solid;
-    laminaTallyAdd(LAMINA_TALLY_DOUBTFUL, laminaBitsSet(surface));
-    laminaTallyAdd(LAMINA_TALLY_ENCLOSED, laminaBitsSet(solid & ~surface));
+    laminaTallyAdd(LAMINA_TALLY_DOUBTFUL, uint(laminaBitCount(surface)));
+    laminaTallyAdd(LAMINA_TALLY_ENCLOSED, uint(laminaBitCount(solid & ~surface)));
 }

@@ -22,5 +22,5 @@ void main() {
     uvec4 close = (~eights & fours & (ones | twos)) | (eights & ~fours & ~twos);
     uvec4 doubtful = close & laminaContested[index];
     laminaContested[index] = doubtful;
-    laminaTallyAdd(LAMINA_TALLY_DOUBTFUL, laminaBitsSet(doubtful));
+    laminaTallyAdd(LAMINA_TALLY_DOUBTFUL, uint(laminaBitCount(doubtful)));
 }

@@ -1,4 +1,5 @@
 // What the solid rules report (LAMINA_TALLY_*).
+#include <lamina/bits.glsl>
 #include <lamina/shared/solid_block.glsl>
 
 layout(std430, binding = LAMINA_SOLID_TALLY_BINDING) buffer LaminaSolidTally {
@@ -12,9 +13,4 @@ void laminaTallyAdd(uint number, uint amount) {
     uint found = atomicAdd(laminaTally[number], amount);
     if (found + amount < found)
         atomicAdd(laminaTally[number + 1u], 1u);
-}
-
-uint laminaBitsSet(uvec4 bits) {
-    ivec4 counts = bitCount(bits);
-    return uint(counts.x + counts.y + counts.z + counts.w);
 }
