@@ -1,4 +1,5 @@
 #include "area_light/luminance_table.hpp"
+#include "core/finite.hpp"
 
 #include <lamina/area_light/virtual_lights.hpp>
 
@@ -11,6 +12,8 @@
 
 namespace lamina {
 namespace {
+
+using detail::isFinite;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -27,10 +30,6 @@ double halton(std::uint32_t index, std::uint32_t base) {
         value += digit * (index % base);
     }
     return value;
-}
-
-bool isFinite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 /// Two unit vectors that complete `axis` to a right-handed frame.

@@ -1,5 +1,7 @@
 #include "gl/view_constants.hpp"
 
+#include "core/finite.hpp"
+
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
@@ -9,13 +11,7 @@
 namespace lamina {
 namespace {
 
-bool isFinite(const glm::dmat4& matrix) {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            if (!std::isfinite(matrix[column][row]))
-                return false;
-    return true;
-}
+using detail::isFinite;
 
 Error invalid(std::string_view operation, const std::string& found) {
     return Error{

@@ -1,5 +1,6 @@
 #include <lamina/grid/grid_transform.hpp>
 
+#include "core/finite.hpp"
 #include "lamina/shared/constants.glsl"
 
 #include <glm/gtc/matrix_inverse.hpp>
@@ -12,20 +13,10 @@
 namespace lamina {
 namespace {
 
+using detail::isFinite;
+
 Error invalid(std::string text) {
     return {ErrorCode::InvalidArgument, "grid transform: " + std::move(text)};
-}
-
-bool isFinite(double value) {
-    return std::isfinite(value);
-}
-
-bool isFinite(const glm::dmat4& matrix) {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            if (!std::isfinite(matrix[column][row]))
-                return false;
-    return true;
 }
 
 std::string numbers(const glm::dvec3& v) {
@@ -102,7 +93,7 @@ Result<GridCamera> GridCamera::fromMatrices(const glm::dmat4& view, const glm::d
             std::to_string(at(3, 2)) + ", " + std::to_string(at(3, 3)) + ")");
     }
     const bool perspective = camera.projection == Projection::Perspective;
-    if (!isFinite(camera.near) || !isFinite(camera.far) || camera.near >= camera.far ||
+    if (!std::isfinite(camera.near) || !std::isfinite(camera.far) || camera.near >= camera.far ||
         (perspective && camera.near <= 0.0))
         return invalid(
             "expected a projection with depth in [-1,1], near to -1 and a finite far plane; "
@@ -121,8 +112,8 @@ Result<GridTransform> GridTransform::box(const Box3& world, const glm::uvec3& vo
                        std::to_string(static_cast<int>(axis)));
     const glm::dvec3 extent = world.max - world.min;
     for (int i = 0; i < 3; ++i)
-        if (!isFinite(world.min[i]) || !isFinite(world.max[i]) || !isFinite(extent[i]) ||
-            !(extent[i] > 0.0))
+        if (!std::isfinite(world.min[i]) || !std::isfinite(world.max[i]) ||
+            !std::isfinite(extent[i]) || !(extent[i] > 0.0))
             return invalid("expected a finite box with min < max on each axis, found min " +
                            numbers(world.min) + ", max " + numbers(world.max) +
                            "; give a flat mesh an explicit box");
@@ -162,7 +153,7 @@ Result<GridTransform> GridTransform::camera(const GridCamera& camera, const glm:
     if (auto checked = checkSize(size); !checked)
         return checked.error();
     const bool perspective = camera.projection == Projection::Perspective;
-    if (!isFinite(camera.near) || !isFinite(camera.far) || !(camera.near < camera.far))
+    if (!std::isfinite(camera.near) || !std::isfinite(camera.far) || !(camera.near < camera.far))
         return invalid("expected near < far, found near " + std::to_string(camera.near) + ", far " +
                        std::to_string(camera.far));
     if (perspective && !(camera.near > 0.0))
@@ -170,7 +161,7 @@ Result<GridTransform> GridTransform::camera(const GridCamera& camera, const glm:
                        std::to_string(camera.near));
     const double width = camera.right - camera.left;
     const double height = camera.top - camera.bottom;
-    if (!isFinite(width) || !isFinite(height) || width == 0.0 || height == 0.0)
+    if (!std::isfinite(width) || !std::isfinite(height) || width == 0.0 || height == 0.0)
         return invalid("expected a finite window with left != right and bottom != top, found [" +
                        std::to_string(camera.left) + ", " + std::to_string(camera.right) + "] x [" +
                        std::to_string(camera.bottom) + ", " + std::to_string(camera.top) + "]");

@@ -1,9 +1,10 @@
 #pragma once
 
+#include "core/finite.hpp"
+
 #include <lamina/core/result.hpp>
 #include <lamina/core/triangle_mesh.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -44,10 +45,6 @@ struct SourceLocation {
     if (value < -kLargest)
         return -std::numeric_limits<float>::infinity();
     return static_cast<float>(value);
-}
-
-[[nodiscard]] inline bool isFinite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 /// Limits a colour component to [0,1]; NaN becomes 0.

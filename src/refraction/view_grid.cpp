@@ -1,5 +1,7 @@
 #include "refraction/view_grid.hpp"
 
+#include "core/finite.hpp"
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -9,6 +11,8 @@
 
 namespace lamina {
 namespace {
+
+using detail::isFinite;
 
 /// Cosines and relative lengths below this are rounding of the host's matrices.
 constexpr double kSkew = 1e-5;
@@ -34,13 +38,6 @@ WindowAxis windowAxis(const glm::dvec4& row, const glm::dvec3& forward, bool isP
 
 Error invalid(std::string_view operation, const std::string& text) {
     return Error{ErrorCode::InvalidArgument, std::string(operation) + ": " + text};
-}
-
-bool isFinite(const Box3& box) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis]))
-            return false;
-    return true;
 }
 
 } // namespace

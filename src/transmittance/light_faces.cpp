@@ -1,5 +1,7 @@
 #include "transmittance/light_faces.hpp"
 
+#include "core/finite.hpp"
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -10,13 +12,11 @@
 namespace lamina {
 namespace {
 
+using detail::isFinite;
+
 /// A point light whose casters lie within this angle of one direction needs one grid.
 constexpr double kWidestAngle = 50.0 * std::numbers::pi / 180.0;
 constexpr double kWidestCone = 1.4;
-
-bool isFinite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 Error invalid(const std::string& text) {
     return Error{ErrorCode::InvalidArgument, "transmittance: " + text};

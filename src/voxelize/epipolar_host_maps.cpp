@@ -1,5 +1,6 @@
 #include "voxelize/epipolar_host_maps.hpp"
 
+#include "core/finite.hpp"
 #include "voxelize/epipolar_depth_maps.hpp"
 
 #include <glm/geometric.hpp>
@@ -12,16 +13,10 @@
 namespace lamina {
 namespace {
 
+using detail::isFinite;
+
 std::string text(const glm::uvec2& size) {
     return std::to_string(size.x) + " x " + std::to_string(size.y);
-}
-
-bool isFinite(const glm::dmat4& matrix) {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            if (!std::isfinite(matrix[column][row]))
-                return false;
-    return true;
 }
 
 /// The frame (u, v, axis) around the eye, to world space.

@@ -1,5 +1,7 @@
 #include <lamina/voxelize/epipolar_transform.hpp>
 
+#include "core/finite.hpp"
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -11,16 +13,14 @@
 namespace lamina {
 namespace {
 
+using detail::isFinite;
+
 constexpr double kPi = std::numbers::pi;
 /// No range is narrower than this (radians, or a share of the far distance): scales stay finite.
 constexpr double kLeastRange = 1e-6;
 
 Error invalid(const std::string& text) {
     return Error{ErrorCode::InvalidArgument, "epipolar transform: " + text};
-}
-
-bool isFinite(const glm::dvec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 /// Angle between two vectors, exact near 0 and pi.

@@ -1,7 +1,8 @@
 #include "voxelize/mesh_view.hpp"
 
+#include "core/finite.hpp"
+
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 
@@ -19,12 +20,8 @@ std::uint64_t bufferBytes(const GladGLContext& gl, GLuint buffer) {
 }
 
 bool isAffine(const glm::mat4& matrix) {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            if (!std::isfinite(matrix[column][row]))
-                return false;
-    return matrix[0][3] == 0.0f && matrix[1][3] == 0.0f && matrix[2][3] == 0.0f &&
-           matrix[3][3] == 1.0f;
+    return detail::isFinite(matrix) && matrix[0][3] == 0.0f && matrix[1][3] == 0.0f &&
+           matrix[2][3] == 0.0f && matrix[3][3] == 1.0f;
 }
 
 } // namespace
