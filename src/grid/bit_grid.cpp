@@ -1,11 +1,71 @@
 #include <lamina/grid/bit_grid.hpp>
 
+#include "grid/bit_transpose.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <new>
 #include <numeric>
 
 namespace lamina {
+namespace {
+
+/// Where the words of a box grid's columns stand.
+struct TransposeSide {
+    glm::uvec3 axes;          ///< World axes of columns x, columns y, slices.
+    std::size_t strides[3]{}; ///< Words between neighbours along a world axis; 0 along the slices.
+
+    TransposeSide(const glm::uvec3& worldAxes, const glm::uvec3& size)
+        : axes(worldAxes) {
+        strides[axes.x] = 4;
+        strides[axes.y] = std::size_t{4} * size.x;
+        mGroupWords = strides[axes.y] * size.y;
+    }
+
+    /// Of the word that holds a voxel along world x, y, z.
+    [[nodiscard]] std::size_t wordIndex(const glm::uvec3& voxel) const {
+        const std::uint32_t slice = voxel[axes.z];
+        return voxel[axes.x] * strides[axes.x] + voxel[axes.y] * strides[axes.y] +
+               (slice >> 7u) * mGroupWords + ((slice >> 5u) & 3u);
+    }
+
+private:
+    std::size_t mGroupWords;
+};
+
+/// Moves 128 slices of 128 columns from one grid to another of which they are 128 columns of 128
+/// slices: whole texels on both sides. corner: the tile's low voxel along world x, y, z. `to` is
+/// clear there.
+void transposeTile(const std::uint32_t* from, const TransposeSide& source, std::uint32_t* to,
+                   const TransposeSide& target, const glm::uvec3& corner, std::uint32_t rowEnd) {
+    const unsigned rows = target.axes.z, columns = source.axes.z;
+    glm::uvec3 voxel = corner;
+    for (; voxel[rows] < std::min(rowEnd, corner[rows] + 128); voxel[rows] += 32) {
+        const std::uint32_t* texels = from + source.wordIndex(voxel);
+        const std::size_t texelStride = source.strides[rows];
+        const std::uint32_t count = std::min(32u, rowEnd - voxel[rows]);
+        // Most words of a surface's grid are clear, seen with one look at each texel.
+        std::uint32_t any[4] = {};
+        for (std::uint32_t row = 0; row < count; ++row)
+            for (int word = 0; word < 4; ++word)
+                any[word] |= texels[row * texelStride + word];
+        std::uint32_t* out = to + target.wordIndex(voxel);
+        for (std::uint32_t word = 0; word < 4; ++word) {
+            if (any[word] == 0)
+                continue;
+            std::uint32_t bits[32] = {};
+            for (std::uint32_t row = 0; row < count; ++row)
+                bits[row] = texels[row * texelStride + word];
+            detail::transpose32(bits);
+            // Past the last slice, which is the last column here, bits are clear.
+            for (std::uint32_t column = 0; column < 32; ++column)
+                if (bits[column] != 0)
+                    out[(32 * word + column) * target.strides[columns]] = bits[column];
+        }
+    }
+}
+
+} // namespace
 
 Result<BitGrid> BitGrid::create(const GridTransform& transform) {
     BitGrid grid(transform);
@@ -115,12 +175,20 @@ Result<BitGrid> BitGrid::reoriented(Axis axis) const {
     if (!target)
         return target;
     const glm::uvec3 toAxes = boxGridAxes(axis);
-    forEachSet([&](const glm::uvec3& voxel) {
-        glm::uvec3 world;
-        for (int i = 0; i < 3; ++i)
-            world[fromAxes[i]] = voxel[i];
-        target->set({world[toAxes.x], world[toAxes.y], world[toAxes.z]});
-    });
+    const TransposeSide source{fromAxes, size()};
+    const TransposeSide sink{toAxes, target->size()};
+    // The axis that is neither's slices.
+    const unsigned other = 3 - fromAxes.z - toAxes.z;
+    for (std::uint32_t row = 0; row < worldCounts[toAxes.z]; row += kSlicesPerGroup)
+        for (std::uint32_t slice = 0; slice < worldCounts[fromAxes.z]; slice += kSlicesPerGroup)
+            for (std::uint32_t layer = 0; layer < worldCounts[other]; ++layer) {
+                glm::uvec3 corner;
+                corner[toAxes.z] = row;
+                corner[fromAxes.z] = slice;
+                corner[other] = layer;
+                transposeTile(mWords.data(), source, target->mWords.data(), sink, corner,
+                              worldCounts[toAxes.z]);
+            }
     return target;
 }
 

@@ -1,5 +1,7 @@
 #include "grid_io/box_voxels.hpp"
 
+#include "grid/bit_transpose.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -124,17 +126,6 @@ void BoxVoxels::load(AxisOrder order, const glm::uvec3& low, const glm::uvec3& e
                     block.words[(slice - firstSlice) * sliceStride + other * otherStride + w] =
                         bits[slice - base];
             }
-        }
-}
-
-void transpose32(std::uint32_t words[32]) {
-    // Swaps the off-diagonal quarters of ever smaller squares.
-    std::uint32_t mask = 0x0000ffffu;
-    for (std::uint32_t half = 16; half != 0; half >>= 1, mask ^= mask << half)
-        for (std::uint32_t row = 0; row < 32; row = ((row | half) + 1) & ~half) {
-            const std::uint32_t swapped = ((words[row] >> half) ^ words[row | half]) & mask;
-            words[row] ^= swapped << half;
-            words[row | half] ^= swapped;
         }
 }
 

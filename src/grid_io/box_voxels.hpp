@@ -79,9 +79,6 @@ private:
     std::size_t mGroupStride; ///< Words between groups of slices.
 };
 
-/// Transposes a 32 x 32 bit matrix: bit c of words[r] becomes bit r of words[c].
-void transpose32(std::uint32_t words[32]);
-
 /// Writes one byte, 0 or 1, for each of the first `count` bits.
 void expandBits(std::span<const std::uint32_t> words, std::size_t count, std::uint8_t* bytes);
 

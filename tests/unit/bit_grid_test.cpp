@@ -106,16 +106,25 @@ TEST(BitGrid, Compares) {
 }
 
 TEST(BitGrid, ReorientedGridsHoldTheSameWorldVoxels) {
-    for (const Axis from : {Axis::X, Axis::Y, Axis::Z})
-        for (const Axis to : {Axis::X, Axis::Y, Axis::Z}) {
-            const BitGrid grid = randomGrid(boxGrid({5, 6, 7}, from)).first;
-            const BitGrid turned = grid.reoriented(to).value();
-            EXPECT_EQ(turned.transform().boxAxis(), to);
-            EXPECT_EQ(turned.count(), grid.count());
-            grid.forEachSet([&](const glm::uvec3& voxel) {
-                EXPECT_TRUE(turned.at(grid.transform().voxelCenter(voxel)));
-            });
-        }
+    // Sides that straddle words and groups, and each axis the longest once.
+    const glm::uvec3 sizes[] = {{5, 6, 7},     {1, 1, 1},    {31, 32, 33}, {129, 2, 40},
+                                {3, 127, 130}, {64, 1, 257}, {1, 300, 33}, {128, 33, 7}};
+    for (const glm::uvec3& size : sizes)
+        for (const Axis from : {Axis::X, Axis::Y, Axis::Z})
+            for (const Axis to : {Axis::X, Axis::Y, Axis::Z}) {
+                const BitGrid grid = randomGrid(boxGrid(size, from)).first;
+                const BitGrid turned = grid.reoriented(to).value();
+                ASSERT_EQ(turned.transform().boxAxis(), to);
+                // Voxel by voxel, by the places of their centres in the world.
+                BitGrid expected = BitGrid::create(turned.transform()).value();
+                grid.forEachSet([&](const glm::uvec3& voxel) {
+                    expected.set(
+                        expected.transform().voxelAt(grid.transform().voxelCenter(voxel)).value());
+                });
+                EXPECT_TRUE(std::ranges::equal(turned.words(), expected.words()))
+                    << size.x << " x " << size.y << " x " << size.z << " from "
+                    << static_cast<int>(from) << " to " << static_cast<int>(to);
+            }
     const GridTransform camera =
         GridTransform::camera(GridCamera{.near = 1, .far = 2}, {2, 2, 2}).value();
     EXPECT_THAT(BitGrid::create(camera)->reoriented(Axis::X).error().text, HasSubstr("box grid"));

@@ -118,7 +118,7 @@ public:
     [[nodiscard]] std::span<std::uint32_t> words() { return mWords; }
 
     /// The same voxels with columns along `axis`. This grid must come from GridTransform::box()
-    /// with a linear distribution, without local ranges.
+    /// with a linear distribution, without local ranges. Cost: one pass over the words of both.
     /// Errors: InvalidArgument for other grids, OutOfMemory.
     [[nodiscard]] Result<BitGrid> reoriented(Axis axis) const;
 

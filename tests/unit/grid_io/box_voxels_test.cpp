@@ -1,5 +1,6 @@
 #include "grid_fixture.hpp"
 
+#include "grid/bit_transpose.hpp"
 #include "grid_io/box_voxels.hpp"
 
 #include <gmock/gmock.h>
