@@ -9,18 +9,16 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <optional>
 #include <string>
 #include <string_view>
 
-/// The words that options take. A word without a value is known but not served by this version:
-/// serving it is a matter of naming its value here.
+/// The words that options take.
 namespace lamina::tool {
 
 template<class T>
 struct Choice {
     std::string_view word;
-    std::optional<T> value = std::nullopt;
+    T value;
 };
 
 inline constexpr std::array kCoverages{
@@ -58,29 +56,22 @@ inline constexpr std::array kAxes{
     Choice<Axis>{"z", Axis::Z},
 };
 
-/// "a, b, c"; `servedOnly`: without the words that have no value.
+/// "a, b, c".
 template<class Table>
-[[nodiscard]] std::string words(const Table& table, bool servedOnly = false) {
+[[nodiscard]] std::string words(const Table& table) {
     std::string list;
     for (const auto& choice : table)
-        if (choice.value || !servedOnly)
-            list += fmt::format("{}{}", list.empty() ? "" : ", ", choice.word);
+        list += fmt::format("{}{}", list.empty() ? "" : ", ", choice.word);
     return list;
 }
 
 /// The value of `word`, given for `option`.
-/// Throws Failure: BadCommandLine for an unknown word, Unsupported for one without value.
+/// Throws Failure for an unknown word.
 template<class Table>
 [[nodiscard]] auto choose(std::string_view option, const Table& table, std::string_view word) {
-    for (const auto& choice : table) {
-        if (choice.word != word)
-            continue;
-        if (!choice.value)
-            throw Failure(ExitCode::Unsupported,
-                          fmt::format("{}: {} is not served by this version; choose one of {}",
-                                      option, word, words(table, true)));
-        return *choice.value;
-    }
+    for (const auto& choice : table)
+        if (choice.word == word)
+            return choice.value;
     throw Failure(ExitCode::BadCommandLine,
                   fmt::format("{}: expected one of {}, found '{}'", option, words(table), word));
 }

@@ -134,8 +134,7 @@ void addMethodOptions(CLI::App& app, Arguments& args) {
         ->type_name("WORD")
         ->group(group);
     app.add_option("--backend", args.backend,
-                   fmt::format("How voxels are made: {} (default auto); this version serves {}",
-                               words(kBackends), words(kBackends, true)))
+                   fmt::format("How voxels are made: {} (default auto)", words(kBackends)))
         ->type_name("WORD")
         ->group(group);
     app.add_option("--attributes", args.attributes,

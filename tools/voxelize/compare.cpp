@@ -98,12 +98,12 @@ void compareOnDevice(const Request& request, const TriangleMesh& mesh, StageCloc
     Comparison comparison(open, buffers, transform);
     for (const auto& coverage : kCoverages)
         for (const auto& backend : kBackends) {
-            if (backend.value.value_or(Backend::Automatic) == Backend::Automatic ||
-                request.comparedCoverage.value_or(*coverage.value) != *coverage.value)
+            if (backend.value == Backend::Automatic ||
+                request.comparedCoverage.value_or(coverage.value) != coverage.value)
                 continue;
             auto method =
                 clock.run("compare", fmt::format("{} by {}", coverage.word, backend.word),
-                          [&] { return comparison.measure(*backend.value, *coverage.value); });
+                          [&] { return comparison.measure(backend.value, coverage.value); });
             if (method)
                 record.comparison.push_back(std::move(*method));
         }

@@ -14,7 +14,7 @@ enum class ExitCode : int {
     Failed = 1,         ///< Reading, writing, memory or OpenGL failed.
     BadCommandLine = 2, ///< The request itself is wrong.
     BadMesh = 3,        ///< The mesh file cannot be read or holds nothing to voxelize.
-    Unsupported = 4,    ///< Not served by this version, or over a limit.
+    Unsupported = 4,    ///< A combination that is not served, or over a limit.
 };
 
 /// Ends the run; main() turns it into a message and an exit code.

@@ -75,7 +75,7 @@ Exit codes:
   1        reading, writing, memory or OpenGL failed
   2        the command line is wrong
   3        the mesh file cannot be read or holds nothing to voxelize
-  4        not served by this version, or over a limit of device, memory or format
+  4        a combination that is not served, or over a limit of device, memory or format
   128 + N  ended by signal N; no partial file is left
 
 Examples:
