@@ -6,6 +6,7 @@
 #include <lamina/grid_io/grid_file.hpp>
 
 #include <bit>
+#include <cmath>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -38,9 +39,23 @@ std::string exactText(double value);
 /// "read grid 'NAME': DETAIL" as InvalidFile.
 Error invalidFile(const std::filesystem::path& path, const std::string& detail);
 
-inline void report(const GridWriteOptions& options, double fraction) {
+/// Errors: Cancelled, if the callback ends the work.
+inline Result<void> report(const GridWriteOptions& options, double fraction) {
+    if (!options.progress || options.progress(fraction))
+        return {};
+    return Error{ErrorCode::Cancelled, "write grid: cancelled by the progress callback after " +
+                                           std::to_string(std::lround(100.0 * fraction)) + " %"};
+}
+
+/// The options for a part of the work, from fraction `begin` to `end` of the whole. `options` must
+/// outlive it.
+inline GridWriteOptions partOf(const GridWriteOptions& options, double begin, double end) {
+    GridWriteOptions part = options;
     if (options.progress)
-        options.progress(fraction);
+        part.progress = [&options, begin, end](double fraction) {
+            return options.progress(std::lerp(begin, end, fraction));
+        };
+    return part;
 }
 
 /// Calls visit(index) for each bit of a row that is set, in order.
@@ -56,7 +71,7 @@ void forEachBit(std::span<const std::uint32_t> row, Visitor&& visit) {
 inline constexpr std::uint32_t kSlabSlices = 32;
 
 /// Calls visit(rows of words, middle index, slow index) for every row of the grid in file order and
-/// reports progress. Stops at the first error visit() returns.
+/// reports progress. Stops at the first error that visit() returns, or when cancelled.
 template<class Visitor>
 Result<void> forEachRow(const BoxVoxels& voxels, AxisOrder order, const GridWriteOptions& options,
                         Visitor&& visit) {
@@ -70,7 +85,8 @@ Result<void> forEachRow(const BoxVoxels& voxels, AxisOrder order, const GridWrit
             for (std::uint32_t m = 0; m < size.y; ++m)
                 if (Result<void> visited = visit(block.row(m, s), m, base + s); !visited)
                     return visited;
-        report(options, static_cast<double>(base + slices) / size.z);
+        if (auto goesOn = report(options, static_cast<double>(base + slices) / size.z); !goesOn)
+            return goesOn;
     }
     return {};
 }

@@ -20,12 +20,16 @@ Result<GridFormat> chosenFormat(const std::filesystem::path& path, GridFormat fo
     return format == GridFormat::Automatic ? gridFormat(path) : Result<GridFormat>(format);
 }
 
-/// Files beside a .npy file: an array for each attribute.
-constexpr std::array kArrays{detail::NpyArray::Color, detail::NpyArray::Normal};
-
-bool isWanted(detail::NpyArray array, const AttributeGrid& attributes) {
-    return array == detail::NpyArray::Color ? !attributes.colors.empty()
-                                            : !attributes.normals.empty();
+/// What stands in files of its own beside a .npy file.
+std::vector<detail::NpyArray> arraysBeside(GridFormat format, const GridWriteOptions& options) {
+    std::vector<detail::NpyArray> arrays;
+    if (format != GridFormat::Npy || options.attributes == nullptr)
+        return arrays;
+    if (!options.attributes->colors.empty())
+        arrays.push_back(detail::NpyArray::Color);
+    if (!options.attributes->normals.empty())
+        arrays.push_back(detail::NpyArray::Normal);
+    return arrays;
 }
 
 std::filesystem::path besideFile(const std::filesystem::path& path, detail::NpyArray array) {
@@ -115,10 +119,8 @@ Result<std::vector<std::filesystem::path>> gridFiles(const std::filesystem::path
     if (!format)
         return format.error();
     std::vector<std::filesystem::path> files{path};
-    if (*format == GridFormat::Npy && options.attributes != nullptr)
-        for (const detail::NpyArray array : kArrays)
-            if (isWanted(array, *options.attributes))
-                files.push_back(besideFile(path, array));
+    for (const detail::NpyArray array : arraysBeside(*format, options))
+        files.push_back(besideFile(path, array));
     return files;
 }
 
@@ -141,20 +143,25 @@ Result<void> writeGrid(const std::filesystem::path& path, const BitGrid& grid,
         auto file = AtomicFile::create(path);
         if (!file)
             return file.error();
-        if (auto written = writeContent(*format, *file, *voxels, options); !written)
+        const std::vector<detail::NpyArray> arrays = arraysBeside(*format, options);
+        const double share = 1.0 / static_cast<double>(1 + arrays.size());
+        if (auto written =
+                writeContent(*format, *file, *voxels, detail::partOf(options, 0.0, share));
+            !written)
             return written;
         std::vector<AtomicFile> beside;
-        if (*format == GridFormat::Npy && options.attributes != nullptr)
-            for (const detail::NpyArray array : kArrays) {
-                if (!isWanted(array, *options.attributes))
-                    continue;
-                auto added = AtomicFile::create(besideFile(path, array));
-                if (!added)
-                    return added.error();
-                if (auto written = detail::writeNpy(*added, *voxels, array, {}); !written)
-                    return written;
-                beside.push_back(std::move(*added));
-            }
+        for (const detail::NpyArray array : arrays) {
+            auto added = AtomicFile::create(besideFile(path, array));
+            if (!added)
+                return added.error();
+            beside.push_back(std::move(*added));
+            const auto place = static_cast<double>(beside.size());
+            const double end = beside.size() == arrays.size() ? 1.0 : share * (place + 1.0);
+            if (auto written = detail::writeNpy(beside.back(), *voxels, array,
+                                                detail::partOf(options, share * place, end));
+                !written)
+                return written;
+        }
         for (AtomicFile& added : beside)
             if (auto committed = added.commit(); !committed)
                 return committed;

@@ -74,26 +74,31 @@ public:
         mImage.rgba.resize(4 * mSums.size());
     }
 
-    Image run() {
-        forEachRow(0.0, 0.3, [this](std::uint32_t y) { draftRow(y); });
-        forEachRow(0.3, 1.0, [this](std::uint32_t y) { finishRow(y); });
+    /// Errors: Cancelled.
+    Result<Image> run() {
+        if (!forEachRow(0.0, 0.3, [this](std::uint32_t y) { draftRow(y); }) ||
+            !forEachRow(0.3, 1.0, [this](std::uint32_t y) { finishRow(y); }))
+            return Error{ErrorCode::Cancelled, "preview: cancelled by the progress callback"};
         return std::move(mImage);
     }
 
 private:
+    /// Did it go to the end?
     template<class Work>
-    void forEachRow(double progressBegin, double progressEnd, const Work& work) {
+    bool forEachRow(double progressBegin, double progressEnd, const Work& work) {
         std::atomic<std::uint32_t> next{0};
+        std::atomic<bool> isCancelled{false};
         const auto draw = [&](bool reports) {
             // At most about a hundred calls of the callback a pass, however tall the picture.
             const std::uint32_t step = mDesc.height / 100 + 1;
             std::uint32_t reported = 0;
-            for (std::uint32_t y; (y = next++) < mDesc.height;) {
+            for (std::uint32_t y; !isCancelled && (y = next++) < mDesc.height;) {
                 work(y);
                 if (reports && mProgress && y + 1 >= reported + step) {
                     reported = y + 1;
-                    mProgress(progressBegin +
-                              (progressEnd - progressBegin) * reported / mDesc.height);
+                    if (!mProgress(progressBegin +
+                                   (progressEnd - progressBegin) * reported / mDesc.height))
+                        isCancelled = true;
                 }
             }
         };
@@ -108,8 +113,7 @@ private:
         }
         draw(true);
         helpers.clear();
-        if (mProgress)
-            mProgress(progressEnd);
+        return !isCancelled && (!mProgress || mProgress(progressEnd));
     }
 
     void draftRow(std::uint32_t y) {

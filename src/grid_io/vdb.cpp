@@ -20,8 +20,11 @@ namespace {
 /// A stream into an AtomicFile. OpenVDB goes back to fill in offsets, so positions must work.
 class AtomicFileBuffer : public std::streambuf {
 public:
-    explicit AtomicFileBuffer(AtomicFile& file)
-        : mFile(file) {}
+    /// Reports as if about `expectedBytes` will be written.
+    AtomicFileBuffer(AtomicFile& file, const GridWriteOptions& options, double expectedBytes)
+        : mFile(file)
+        , mOptions(options)
+        , mExpectedBytes(std::max(expectedBytes, 1.0)) {}
 
     const Result<void>& result() const { return mResult; }
 
@@ -35,6 +38,13 @@ protected:
         if (inside < bytes.size())
             keep(mFile.write(bytes.subspan(inside)));
         mPosition += bytes.size();
+        if (mResult && static_cast<double>(mFile.size()) >= mNextReport) {
+            constexpr double kReports = 100.0;
+            mNextReport += mExpectedBytes / kReports;
+            if (mNextReport < mExpectedBytes)
+                keep(report(mOptions,
+                            std::min(1.0, static_cast<double>(mFile.size()) / mExpectedBytes)));
+        }
         return mResult ? count : 0;
     }
     int_type overflow(int_type c) override {
@@ -62,6 +72,9 @@ private:
     }
 
     AtomicFile& mFile;
+    const GridWriteOptions& mOptions;
+    const double mExpectedBytes;
+    double mNextReport = 0.0;
     std::uint64_t mPosition = 0;
     Result<void> mResult;
 };
@@ -117,7 +130,8 @@ openvdb::math::Transform::Ptr transformOf(const BoxVoxels& voxels) {
     return openvdb::math::Transform::createLinearTransform(matrix);
 }
 
-openvdb::FloatGrid::Ptr densityGrid(const BoxVoxels& voxels, const GridWriteOptions& options) {
+Result<openvdb::GridBase::Ptr> densityGrid(const BoxVoxels& voxels,
+                                           const GridWriteOptions& options) {
     auto grid = openvdb::FloatGrid::create(0.0f);
     grid->setName("density");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
@@ -134,67 +148,100 @@ openvdb::FloatGrid::Ptr densityGrid(const BoxVoxels& voxels, const GridWriteOpti
                 for (std::uint32_t x = 0; x < size.x; x += 8)
                     addLeaf(accessor, block, openvdb::Coord(int(x), int(y), int(base + z)), x / 8,
                             y, z);
-        // Writing the tree takes about as long as building it.
-        report(options, 0.5 * (base + block.extent.z) / size.z);
+        if (auto goesOn = report(options, static_cast<double>(base + block.extent.z) / size.z);
+            !goesOn)
+            return goesOn.error();
     }
-    return grid;
+    return openvdb::GridBase::Ptr(grid);
 }
 
 /// A vector for each set voxel of which valueOf(voxel) gives one.
 template<class ValueOf>
-openvdb::Vec3SGrid::Ptr vectorGrid(const BoxVoxels& voxels, const char* name, ValueOf&& valueOf) {
+Result<openvdb::GridBase::Ptr> vectorGrid(const BoxVoxels& voxels, const char* name,
+                                          const GridWriteOptions& options, ValueOf&& valueOf) {
     auto grid = openvdb::Vec3SGrid::create();
     grid->setName(name);
     grid->setTransform(transformOf(voxels));
     openvdb::tree::ValueAccessor<openvdb::Vec3STree, false> accessor(grid->tree());
-    // Visits by row cannot fail.
-    (void)forEachRow(voxels, {0, 1, 2}, {},
-                     [&](std::span<const std::uint32_t> row, std::uint32_t y, std::uint32_t z) {
-                         forEachBit(row, [&](std::uint32_t x) {
-                             if (const auto value = valueOf(glm::uvec3(x, y, z)))
-                                 accessor.setValue(openvdb::Coord(int(x), int(y), int(z)),
-                                                   openvdb::Vec3s(value->x, value->y, value->z));
-                         });
-                         return Result<void>();
-                     });
+    auto visited =
+        forEachRow(voxels, {0, 1, 2}, options,
+                   [&](std::span<const std::uint32_t> row, std::uint32_t y, std::uint32_t z) {
+                       forEachBit(row, [&](std::uint32_t x) {
+                           if (const auto value = valueOf(glm::uvec3(x, y, z)))
+                               accessor.setValue(openvdb::Coord(int(x), int(y), int(z)),
+                                                 openvdb::Vec3s(value->x, value->y, value->z));
+                       });
+                       return Result<void>();
+                   });
+    if (!visited)
+        return visited.error();
+    return openvdb::GridBase::Ptr(grid);
+}
+
+Result<openvdb::GridBase::Ptr> colorGrid(const BoxVoxels& voxels, const GridWriteOptions& options) {
+    return vectorGrid(voxels, "color", options,
+                      [&](const glm::uvec3& voxel) -> std::optional<glm::vec3> {
+                          const glm::u8vec4 color = voxels.color(voxel);
+                          if (color == glm::u8vec4(0))
+                              return std::nullopt;
+                          return glm::vec3(color) / 255.0f;
+                      });
+}
+
+Result<openvdb::GridBase::Ptr> normalGrid(const BoxVoxels& voxels,
+                                          const GridWriteOptions& options) {
+    auto grid = vectorGrid(voxels, "normal", options,
+                           [&](const glm::uvec3& voxel) -> std::optional<glm::vec3> {
+                               const glm::vec3 normal = voxels.normal(voxel);
+                               if (normal == glm::vec3(0.0f))
+                                   return std::nullopt;
+                               return normal;
+                           });
+    if (grid)
+        (*grid)->setVectorType(openvdb::VEC_COVARIANT_NORMALIZE);
     return grid;
 }
 
-openvdb::Vec3SGrid::Ptr colorGrid(const BoxVoxels& voxels) {
-    return vectorGrid(voxels, "color", [&](const glm::uvec3& voxel) -> std::optional<glm::vec3> {
-        const glm::u8vec4 color = voxels.color(voxel);
-        if (color == glm::u8vec4(0))
-            return std::nullopt;
-        return glm::vec3(color) / 255.0f;
-    });
+/// Density, then the attributes there are.
+Result<openvdb::GridCPtrVec> makeGrids(const BoxVoxels& voxels, const GridWriteOptions& options) {
+    std::vector<decltype(&densityGrid)> makers{densityGrid};
+    if (voxels.hasColors())
+        makers.push_back(colorGrid);
+    if (voxels.hasNormals())
+        makers.push_back(normalGrid);
+    const auto count = static_cast<double>(makers.size());
+    openvdb::GridCPtrVec grids;
+    for (const auto& make : makers) {
+        const auto place = static_cast<double>(grids.size());
+        auto grid = make(voxels, partOf(options, place / count, (place + 1.0) / count));
+        if (!grid)
+            return grid.error();
+        grids.push_back(std::move(*grid));
+    }
+    return grids;
 }
 
-openvdb::Vec3SGrid::Ptr normalGrid(const BoxVoxels& voxels) {
-    auto grid =
-        vectorGrid(voxels, "normal", [&](const glm::uvec3& voxel) -> std::optional<glm::vec3> {
-            const glm::vec3 normal = voxels.normal(voxel);
-            if (normal == glm::vec3(0.0f))
-                return std::nullopt;
-            return normal;
-        });
-    grid->setVectorType(openvdb::VEC_COVARIANT_NORMALIZE);
-    return grid;
+double memoryBytes(const openvdb::GridCPtrVec& grids) {
+    double bytes = 0.0;
+    for (const auto& grid : grids)
+        bytes += static_cast<double>(grid->memUsage());
+    return bytes;
 }
 
 } // namespace
 
 Result<void> writeVdb(AtomicFile& file, const BoxVoxels& voxels, const GridWriteOptions& options) {
-    AtomicFileBuffer buffer(file);
+    openvdb::initialize();
+    // Writing the trees takes about as long as building them.
+    const auto grids = makeGrids(voxels, partOf(options, 0.0, 0.5));
+    if (!grids)
+        return grids.error();
+    const GridWriteOptions writing = partOf(options, 0.5, 1.0);
+    AtomicFileBuffer buffer(file, writing, memoryBytes(*grids));
     try {
-        openvdb::initialize();
         std::ostream stream(&buffer);
         stream.exceptions(std::ios::badbit | std::ios::failbit);
-        openvdb::GridCPtrVec grids{densityGrid(voxels, options)};
-        if (voxels.hasColors())
-            grids.push_back(colorGrid(voxels));
-        if (voxels.hasNormals())
-            grids.push_back(normalGrid(voxels));
-        StreamArchive().writeTo(stream, grids);
+        StreamArchive().writeTo(stream, *grids);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
@@ -203,8 +250,9 @@ Result<void> writeVdb(AtomicFile& file, const BoxVoxels& voxels, const GridWrite
                          std::string("write vdb: expected OpenVDB to write the grid, found: ") +
                              error.what()};
     }
-    report(options, 1.0);
-    return buffer.result();
+    if (!buffer.result())
+        return buffer.result();
+    return report(options, 1.0);
 }
 
 } // namespace lamina::detail

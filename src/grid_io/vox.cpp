@@ -95,17 +95,18 @@ std::uint32_t colorOf(const BoxVoxels& voxels, const glm::uvec3& voxel) {
     return color.r | std::uint32_t{color.g} << 8u | std::uint32_t{color.b} << 16u;
 }
 
-Palette makePalette(const BoxVoxels& voxels) {
+Result<Palette> makePalette(const BoxVoxels& voxels, const GridWriteOptions& options) {
     if (!voxels.hasColors())
         return Palette::single(kPlainColor);
     PaletteBuilder builder;
-    // Visits by row cannot fail.
-    (void)forEachRow(
-        voxels, {0, 1, 2}, {},
+    auto visited = forEachRow(
+        voxels, {0, 1, 2}, options,
         [&](std::span<const std::uint32_t> row, std::uint32_t y, std::uint32_t z) {
             forEachBit(row, [&](std::uint32_t x) { builder.add(colorOf(voxels, {x, y, z})); });
             return Result<void>();
         });
+    if (!visited)
+        return visited.error();
     return builder.build(kPaletteColors);
 }
 
@@ -186,6 +187,13 @@ Bytes paletteChunk(const Palette& palette) {
     return Bytes().raw(bytes);
 }
 
+/// Models that the grid's box takes, empty ones too.
+std::uint64_t modelCount(const glm::uvec3& size) {
+    const glm::u64vec3 models =
+        (glm::u64vec3(size) + std::uint64_t{kModelSide - 1}) / std::uint64_t{kModelSide};
+    return models.x * models.y * models.z;
+}
+
 Result<void> checkLimits(const BoxVoxels& voxels, const glm::uvec3& size) {
     // The size of all chunks together is one signed 32-bit number.
     constexpr std::uint64_t kMostVoxels = std::numeric_limits<std::int32_t>::max() / 4 - (1u << 20);
@@ -193,9 +201,7 @@ Result<void> checkLimits(const BoxVoxels& voxels, const glm::uvec3& size) {
         return Error{ErrorCode::Unsupported,
                      "write vox: expected at most " + std::to_string(kMostVoxels) +
                          " set voxels, found " + std::to_string(count) + "; choose .vdb or .vti"};
-    const std::uint64_t models = std::uint64_t{(size.x + kModelSide - 1) / kModelSide} *
-                                 ((size.y + kModelSide - 1) / kModelSide) *
-                                 ((size.z + kModelSide - 1) / kModelSide);
+    const std::uint64_t models = modelCount(size);
     constexpr std::uint64_t kMostModels = 4096;
     if (models > kMostModels)
         return Error{ErrorCode::Unsupported, "write vox: expected at most " +
@@ -203,6 +209,75 @@ Result<void> checkLimits(const BoxVoxels& voxels, const glm::uvec3& size) {
                                                  " models of 256 voxels a side, found " +
                                                  std::to_string(models) + "; choose .vdb or .vti"};
     return {};
+}
+
+/// Does one model hold the grid?
+bool isSingle(const glm::uvec3& size) {
+    return std::max({size.x, size.y, size.z}) <= kModelSide;
+}
+
+/// Writes what lies in a model's box and tells whether it is one of the file's models: an empty one
+/// is not, unless it is the only one.
+Result<bool> writeModel(AtomicFile& file, const BoxVoxels& voxels, const Mapping& map,
+                        const glm::uvec3& size, const Palette& palette, const Model& model,
+                        BitBlock& block) {
+    const glm::uvec3 corner = worldLow(map, model, size.y);
+    voxels.load(map.order, corner, model.size, block);
+    std::uint32_t count = 0;
+    for (const std::uint32_t word : block.words)
+        count += static_cast<std::uint32_t>(std::popcount(word));
+    if (count == 0 && !isSingle(size))
+        return false;
+    const auto paletteIndex = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+        if (!voxels.hasColors())
+            return std::uint8_t{1};
+        glm::uvec3 voxel;
+        voxel[map.order.fast] = corner.x + i;
+        voxel[map.order.middle] = corner.y + j;
+        voxel[map.order.slow] = corner.z + k;
+        return static_cast<std::uint8_t>(1 + palette.index(colorOf(voxels, voxel)));
+    };
+    if (auto written = writeModel(file, block, count, map.mirrorY, paletteIndex); !written)
+        return written.error();
+    return true;
+}
+
+/// Writes all models and gives those that the file has: at least one, for a file needs one.
+Result<std::vector<Model>> writeModels(AtomicFile& file, const BoxVoxels& voxels,
+                                       const Mapping& map, const glm::uvec3& size,
+                                       const Palette& palette, const GridWriteOptions& options) {
+    std::vector<Model> models;
+    BitBlock block;
+    const std::uint64_t total = modelCount(size);
+    std::uint64_t done = 0;
+    for (std::uint32_t z = 0; z < size.z; z += kModelSide)
+        for (std::uint32_t y = 0; y < size.y; y += kModelSide)
+            for (std::uint32_t x = 0; x < size.x; x += kModelSide) {
+                const glm::uvec3 low(x, y, z);
+                const Model model{low, glm::min(size - low, glm::uvec3(kModelSide))};
+                const auto written = writeModel(file, voxels, map, size, palette, model, block);
+                if (!written)
+                    return written.error();
+                if (*written)
+                    models.push_back(model);
+                // At each hundredth, however many models there are.
+                ++done;
+                if (done * 100 / total != (done - 1) * 100 / total)
+                    if (auto goesOn =
+                            report(options, static_cast<double>(done) / static_cast<double>(total));
+                        !goesOn)
+                        return goesOn.error();
+            }
+    if (models.empty()) {
+        models.push_back({glm::uvec3(0), glm::uvec3(1)});
+        block = {glm::uvec3(1), 1, {0}};
+        const auto none = [](std::uint32_t, std::uint32_t, std::uint32_t) {
+            return std::uint8_t{1};
+        };
+        if (auto written = writeModel(file, block, 0, false, none); !written)
+            return written.error();
+    }
+    return models;
 }
 
 } // namespace
@@ -219,54 +294,18 @@ Result<void> writeVox(AtomicFile& file, const BoxVoxels& voxels, const GridWrite
         return written;
     const std::uint64_t childrenBegin = file.size();
 
-    const Palette palette = makePalette(voxels);
-    std::vector<Model> models;
-    BitBlock block;
-    const bool single = std::max({size.x, size.y, size.z}) <= kModelSide;
-    for (std::uint32_t z = 0; z < size.z; z += kModelSide) {
-        for (std::uint32_t y = 0; y < size.y; y += kModelSide)
-            for (std::uint32_t x = 0; x < size.x; x += kModelSide) {
-                const glm::uvec3 low(x, y, z);
-                const Model model{low, glm::min(size - low, glm::uvec3(kModelSide))};
-                const glm::uvec3 corner = worldLow(map, model, size.y);
-                voxels.load(map.order, corner, model.size, block);
-                std::uint32_t count = 0;
-                for (const std::uint32_t word : block.words)
-                    count += static_cast<std::uint32_t>(std::popcount(word));
-                // A file needs a model, even an empty one.
-                if (count == 0 && !single)
-                    continue;
-                models.push_back(model);
-                const auto paletteIndex = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
-                    if (!voxels.hasColors())
-                        return std::uint8_t{1};
-                    glm::uvec3 voxel;
-                    voxel[map.order.fast] = corner.x + i;
-                    voxel[map.order.middle] = corner.y + j;
-                    voxel[map.order.slow] = corner.z + k;
-                    return static_cast<std::uint8_t>(1 + palette.index(colorOf(voxels, voxel)));
-                };
-                if (auto written = writeModel(file, block, count, map.mirrorY, paletteIndex);
-                    !written)
-                    return written;
-            }
-        report(options, static_cast<double>(std::min(z + kModelSide, size.z)) / size.z);
-    }
-    if (models.empty()) {
-        models.push_back({glm::uvec3(0), glm::uvec3(1)});
-        block.extent = glm::uvec3(1);
-        block.rowWords = 1;
-        block.words.assign(1, 0);
-        const auto none = [](std::uint32_t, std::uint32_t, std::uint32_t) {
-            return std::uint8_t{1};
-        };
-        if (auto written = writeModel(file, block, 0, false, none); !written)
+    const double paletteShare = voxels.hasColors() ? 0.4 : 0.0;
+    const auto palette = makePalette(voxels, partOf(options, 0.0, paletteShare));
+    if (!palette)
+        return palette.error();
+    const auto models =
+        writeModels(file, voxels, map, size, *palette, partOf(options, paletteShare, 1.0));
+    if (!models)
+        return models.error();
+    if (!isSingle(size))
+        if (auto written = writeSceneGraph(file, *models, size); !written)
             return written;
-    }
-    if (!single)
-        if (auto written = writeSceneGraph(file, models, size); !written)
-            return written;
-    if (auto written = writeChunk(file, "RGBA", paletteChunk(palette)); !written)
+    if (auto written = writeChunk(file, "RGBA", paletteChunk(*palette)); !written)
         return written;
     Bytes childrenBytes;
     childrenBytes.number(static_cast<std::int64_t>(file.size() - childrenBegin));

@@ -188,11 +188,9 @@ Result<void> writeVti(AtomicFile& file, const BoxVoxels& voxels, const GridWrite
         const std::string offset = offsetText(file.size() - begin);
         if (auto stored = file.overwrite(offsets[i], std::as_bytes(std::span(offset))); !stored)
             return stored;
-        GridWriteOptions part = options;
-        const double share = 1.0 / static_cast<double>(arrays.size());
-        part.progress = [&](double fraction) {
-            report(options, share * (static_cast<double>(i) + fraction));
-        };
+        const auto count = static_cast<double>(arrays.size());
+        const GridWriteOptions part =
+            partOf(options, static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
         if (auto written = writeArray(file, voxels, arrays[i], part); !written)
             return written;
     }

@@ -32,4 +32,8 @@ FileGuard::~FileGuard() {
         std::raise(static_cast<int>(sNotedSignal));
 }
 
+bool FileGuard::isSignalled() const {
+    return sNotedSignal != 0;
+}
+
 } // namespace lamina::tool

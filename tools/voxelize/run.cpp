@@ -88,11 +88,14 @@ void writeVoxels(const Request& request, const Voxels& voxels, StageClock& clock
         const Stopwatch watch;
         GridWriteOptions options;
         options.up = request.up;
-        options.progress = [&clock](double fraction) { clock.progress(fraction); };
         if (voxels.attributes && takesAttributes(request, output))
             options.attributes = &*voxels.attributes;
         clock.run("write", "writing " + output.filename().string(), [&] {
             const FileGuard guard;
+            options.progress = [&](double fraction) {
+                clock.progress(fraction);
+                return !guard.isSignalled();
+            };
             require(writeGrid(output, voxels.bits, options));
         });
         const std::string format(name(*gridFormat(output)));
@@ -114,8 +117,10 @@ void writePreview(const Request& request, const Voxels& voxels, StageClock& cloc
         desc.attributes = voxels.attributes ? &*voxels.attributes : nullptr;
         desc.up = glm::dvec3(0.0);
         desc.up[static_cast<int>(request.up)] = 1.0;
-        const Image image = require(renderPreview(
-            voxels.bits, desc, [&clock](double fraction) { clock.progress(fraction); }));
+        const Image image = require(renderPreview(voxels.bits, desc, [&clock](double fraction) {
+            clock.progress(fraction);
+            return true;
+        }));
         const FileGuard guard;
         require(writePng(preview.file, image));
     });

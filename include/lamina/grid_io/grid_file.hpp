@@ -79,8 +79,9 @@ gridFiles(const std::filesystem::path& path, const GridWriteOptions& options = {
 /// with attributes 8 bytes for each 128 slices of each column. Errors: InvalidArgument (attributes
 /// of another number of voxels); UnknownFormat; Unsupported (a camera grid, non-linear slices,
 /// local ranges: see BitGrid::toUniform(), what the format cannot store, Vdb in a build without
-/// OpenVDB); NotFound, InputOutput (see AtomicFile); OutOfMemory. Threads: different files may be
-/// written at the same time.
+/// OpenVDB); NotFound, InputOutput (see AtomicFile); OutOfMemory; Cancelled (by the progress
+/// callback: no file is made, an old one stays). Threads: different files may be written at the
+/// same time.
 [[nodiscard]] LAMINA_API Result<void> writeGrid(const std::filesystem::path& path,
                                                 const BitGrid& grid,
                                                 const GridWriteOptions& options = {});

@@ -52,7 +52,7 @@ struct PreviewDesc {
 /// Memory: 20 bytes a pixel, and 512 bytes for each 16 x 16 x 16 voxels of which any is set.
 /// Cost: about 0.4 microseconds of processor time a sample, whatever the size of the grid.
 /// Errors: InvalidArgument (a value out of its range, attributes of another number of voxels),
-/// Unsupported (another grid), OutOfMemory.
+/// Unsupported (another grid), OutOfMemory, Cancelled.
 /// Threads: may be called from several; starts `threads` - 1 of its own and waits for them.
 [[nodiscard]] LAMINA_API Result<Image> renderPreview(const BitGrid& grid,
                                                      const PreviewDesc& desc = {},

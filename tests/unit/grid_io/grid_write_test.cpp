@@ -34,7 +34,7 @@ TEST_P(GridWrite, WritesAnEmptyGrid) {
     const BitGrid grid = test::emptyGrid(test::boxOf(kCounts, {1, 1, 1}), kCounts, Axis::Z);
     const auto written = writeGrid(mFolder / ("empty" + extension(GetParam())), grid);
     EXPECT_TRUE(written) << written.error().text;
-    EXPECT_EQ(mFolder.fileCount(), 1u);
+    EXPECT_EQ(mFolder.names().size(), 1u);
 }
 
 TEST_P(GridWrite, FormatMayBeChosenAgainstTheExtension) {
@@ -42,8 +42,8 @@ TEST_P(GridWrite, FormatMayBeChosenAgainstTheExtension) {
     options.format = GetParam();
     ASSERT_TRUE(writeGrid(mFolder / "grid.data", cubicGrid(), options));
     ASSERT_TRUE(writeGrid(mFolder / ("grid" + extension(GetParam())), cubicGrid()));
-    const std::string chosen = test::readText(mFolder / "grid.data");
-    const std::string automatic = test::readText(mFolder / ("grid" + extension(GetParam())));
+    const std::string chosen = test::readBytes(mFolder / "grid.data");
+    const std::string automatic = test::readBytes(mFolder / ("grid" + extension(GetParam())));
     ASSERT_FALSE(chosen.empty());
     // OpenVDB puts a random identity into each file.
     EXPECT_EQ(chosen.size(), automatic.size());
@@ -53,7 +53,10 @@ TEST_P(GridWrite, FormatMayBeChosenAgainstTheExtension) {
 TEST_P(GridWrite, ReportsProgressUpToOne) {
     GridWriteOptions options;
     std::vector<double> fractions;
-    options.progress = [&](double fraction) { fractions.push_back(fraction); };
+    options.progress = [&](double fraction) {
+        fractions.push_back(fraction);
+        return true;
+    };
     ASSERT_TRUE(writeGrid(mFolder / ("grid" + extension(GetParam())), cubicGrid(), options));
     ASSERT_FALSE(fractions.empty());
     EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
@@ -61,9 +64,40 @@ TEST_P(GridWrite, ReportsProgressUpToOne) {
     EXPECT_EQ(fractions.back(), 1.0);
 }
 
+TEST_P(GridWrite, IsCancelledAtAnyReportAndKeepsTheOldFile) {
+    const std::filesystem::path file = mFolder / ("grid" + extension(GetParam()));
+    const BitGrid grid = cubicGrid();
+    // With all attributes, for every stage of the writers.
+    AttributeGrid attributes;
+    attributes.colors.resize(grid.count(), glm::u8vec4(10, 20, 30, 255));
+    attributes.normals.resize(grid.count(), glm::vec3(0, 0, 1));
+    GridWriteOptions options;
+    options.attributes = &attributes;
+    int reports = 0;
+    options.progress = [&](double) { return ++reports != 0; };
+    ASSERT_TRUE(writeGrid(file, grid, options));
+    const std::vector<std::filesystem::path> files = gridFiles(file, options).value();
+    for (const std::filesystem::path& made : files)
+        std::filesystem::remove(made);
+    test::writeBytes(file, "old");
+    ASSERT_GT(reports, 0);
+    ASSERT_LT(reports, 500);
+    for (int last = 1; last <= reports; ++last) {
+        int asked = 0;
+        options.progress = [&](double) { return ++asked < last; };
+        const auto written = writeGrid(file, grid, options);
+        ASSERT_FALSE(written) << last << " of " << reports;
+        EXPECT_EQ(written.error().code, ErrorCode::Cancelled) << written.error().text;
+        EXPECT_THAT(written.error().text, HasSubstr("cancelled by the progress callback"));
+        EXPECT_EQ(asked, last) << "asked again";
+        EXPECT_EQ(test::readBytes(file), "old");
+        EXPECT_EQ(mFolder.names().size(), 1u);
+    }
+}
+
 TEST_P(GridWrite, KeepsTheOldFileWhenThereIsNoRoom) {
     const std::filesystem::path file = mFolder / ("grid" + extension(GetParam()));
-    test::writeText(file, "old");
+    test::writeBytes(file, "old");
     {
         const test::FileSizeLimit limit(200);
         const auto written = writeGrid(file, cubicGrid());
@@ -71,8 +105,8 @@ TEST_P(GridWrite, KeepsTheOldFileWhenThereIsNoRoom) {
         EXPECT_EQ(written.error().code, ErrorCode::InputOutput);
         EXPECT_THAT(written.error().text, HasSubstr("expected room for"));
     }
-    EXPECT_EQ(test::readText(file), "old");
-    EXPECT_EQ(mFolder.fileCount(), 1u);
+    EXPECT_EQ(test::readBytes(file), "old");
+    EXPECT_EQ(mFolder.names().size(), 1u);
 }
 
 TEST_P(GridWrite, RefusesCameraGridsAndUnequalSlices) {
@@ -87,7 +121,7 @@ TEST_P(GridWrite, RefusesCameraGridsAndUnequalSlices) {
         EXPECT_EQ(written.error().code, ErrorCode::Unsupported);
         EXPECT_THAT(written.error().text, HasSubstr("slices of equal depth, found 4 x 4 x"));
     }
-    EXPECT_EQ(mFolder.fileCount(), 0u);
+    EXPECT_EQ(mFolder.names().size(), 0u);
 }
 
 TEST_P(GridWrite, NamesAMissingDirectory) {
@@ -124,7 +158,7 @@ TEST(BinvoxWriter, RefusesVoxelsThatAreNotCubes) {
     EXPECT_EQ(written.error().code, ErrorCode::Unsupported);
     EXPECT_THAT(written.error().text,
                 HasSubstr("expected cubic voxels, found edges 0.25, 0.25, 0.5"));
-    EXPECT_EQ(folder.fileCount(), 0u);
+    EXPECT_EQ(folder.names().size(), 0u);
 }
 
 TEST(VdbWriter, IsAClearErrorInABuildWithoutIt) {

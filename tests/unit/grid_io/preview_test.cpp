@@ -279,11 +279,33 @@ TEST(Preview, ReportsProgressUpToOne) {
     desc.width = 8;
     desc.height = 700;
     desc.samplesPerPixel = 1;
-    ASSERT_TRUE(renderPreview(grid, desc, [&](double fraction) { fractions.push_back(fraction); }));
+    ASSERT_TRUE(renderPreview(grid, desc, [&](double fraction) {
+        fractions.push_back(fraction);
+        return true;
+    }));
     ASSERT_FALSE(fractions.empty());
     EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
     EXPECT_EQ(fractions.back(), 1.0);
     EXPECT_LT(fractions.size(), 400u);
+}
+
+TEST(Preview, IsCancelledInBothPasses) {
+    const BitGrid grid = fullGrid({{0, 0, 0}, {1, 1, 1}}, {4, 4, 4});
+    PreviewDesc desc;
+    desc.width = 8;
+    desc.height = 700;
+    desc.samplesPerPixel = 1;
+    for (const double end : {0.0, 0.1, 0.3, 0.7, 1.0}) {
+        bool wasTold = false;
+        const auto image = renderPreview(grid, desc, [&](double fraction) {
+            EXPECT_FALSE(wasTold) << "asked again";
+            wasTold = fraction >= end;
+            return !wasTold;
+        });
+        ASSERT_FALSE(image) << end;
+        EXPECT_EQ(image.error().code, ErrorCode::Cancelled);
+        EXPECT_THAT(image.error().text, HasSubstr("cancelled by the progress callback"));
+    }
 }
 
 TEST(Preview, NamesArgumentsOutOfRange) {
