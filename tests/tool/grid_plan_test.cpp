@@ -1,6 +1,7 @@
 #include "failure.hpp"
 #include "grid_plan.hpp"
 
+#include <reference/overlap.hpp>
 #include <reference/shapes.hpp>
 
 #include <gtest/gtest.h>
@@ -143,8 +144,50 @@ TEST(GridPlan, MemoryCountsWholeGroupsOf128SlicesTwice) {
     const GridPlan plan = planGrid(byResolution(129), reference::makeCube({0, 0, 0}, 1));
     const double bytes = 129.0 * 129.0 * 2 * 16;
     EXPECT_EQ(plan.bytes(), bytes);
-    EXPECT_EQ(statusOf([&] { checkMemory(plan, 2 * bytes); }), 0);
-    EXPECT_EQ(statusOf([&] { checkMemory(plan, 2 * bytes - 1); }), 4);
+    EXPECT_EQ(statusOf([&] { checkMemory(plan, 0, 2 * bytes); }), 0);
+    EXPECT_EQ(statusOf([&] { checkMemory(plan, 0, 2 * bytes - 1); }), 4);
+}
+
+TEST(GridPlan, MemoryCountsAttributes) {
+    const GridPlan plan = planGrid(byResolution(256), reference::makeCube({0, 0, 0}, 1));
+    EXPECT_EQ(attributeBytes(plan, 0), 0.0);
+    // 16 bytes on the device, 64 while they are made, 22 on the host; 12 for each 128 slices.
+    const double ranks = 256.0 * 256 * 2 * 12;
+    EXPECT_EQ(attributeBytes(plan, 1e6), 102e6 + ranks);
+    // The sums of 2^23 voxels are the most that is kept at a time.
+    EXPECT_EQ(attributeBytes(plan, 1e8) - attributeBytes(plan, 0.9e8), 38e7);
+    const double all = 2 * plan.bytes() + attributeBytes(plan, 1e6);
+    EXPECT_EQ(statusOf([&] { checkMemory(plan, 1e6, all); }), 0);
+    EXPECT_EQ(statusOf([&] { checkMemory(plan, 1e6, all - 1); }), 4);
+}
+
+TEST(GridPlan, ExpectedVoxelsAreAboutThoseThatAreSet) {
+    const TriangleMesh shapes[] = {
+        reference::makeIcosphere({0.1f, 0, 0}, 1, 4),
+        reference::makeTorusKnot({0, 0, 0}, 0.5f, 0.2f, 2, 3, 256, 32),
+        reference::makePlane({0.01f, 0.02f, 0.03f}, {1, 2, 3}, 1),
+    };
+    for (const TriangleMesh& mesh : shapes)
+        for (const std::uint32_t resolution : {64u, 200u}) {
+            const GridPlan plan = planGrid(byResolution(resolution), mesh);
+            const auto grid = GridTransform::box(plan.bounds, plan.counts, plan.axis).value();
+            const auto surface = reference::overlap(mesh, grid).value().count();
+            const double expected = expectedVoxels(plan, mesh, Coverage::Conservative);
+            // Voxels that two sheets share count twice, those that only an edge touches not at all.
+            EXPECT_GT(expected, 0.8 * static_cast<double>(surface));
+            EXPECT_LT(expected, 1.25 * static_cast<double>(surface));
+        }
+    const TriangleMesh& ball = shapes[0];
+    const GridPlan plan = planGrid(byResolution(100), ball);
+    const double inside = 4.18879 * 50 * 50 * 50;
+    EXPECT_NEAR(expectedVoxels(plan, ball, Coverage::Solid) -
+                    expectedVoxels(plan, ball, Coverage::Conservative),
+                inside, 0.02 * inside);
+    // Never more than there are.
+    const TriangleMesh crumpled =
+        reference::makeTriangleSoup({{0, 0, 0}, {1, 1, 1}}, 5000, 0.5f, 1);
+    EXPECT_EQ(expectedVoxels(planGrid(byResolution(8), crumpled), crumpled, Coverage::Solid),
+              512.0);
 }
 
 } // namespace

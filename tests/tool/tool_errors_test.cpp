@@ -193,6 +193,10 @@ TEST_F(ToolErrors, GridsOverALimit) {
                   {"100000 x", "MiB", "--memory-limit"});
     expectFailure({mesh, "-r", "128", "--memory-limit", "0.4", "-o", out}, kUnsupported,
                   {"128 x 128 x 128", "1 MiB", "at most 0 MiB"});
+    expectFailure(
+        {mesh, "-r", "128", "--memory-limit", "1", "--attributes", "normal", "-o", out},
+        kUnsupported,
+        {"plan grid: 128 x 128 x 128", "for the attributes of about", "--attributes none"});
     expectFailure({mesh, "--voxel-size", "1e-9", "-o", out}, kUnsupported, {"larger voxel size"});
     // Small in memory, but longer than any texture.
     expectFailure({mesh, "--bounds", "-1", "-1", "-1", "1", "1", "1", "--grid", "200000", "1", "1",

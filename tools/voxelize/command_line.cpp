@@ -114,8 +114,8 @@ void addGridOptions(CLI::App& app, Arguments& args) {
         ->type_name("AXIS")
         ->group(group);
     app.add_option("--memory-limit", args.memoryLimit,
-                   "Most memory of the grid on device and host together, in MiB (default three "
-                   "quarters of the machine's)")
+                   "Most memory of the grid and its attributes on device and host together, in MiB "
+                   "(default three quarters of the machine's)")
         ->type_name("MIB")
         ->check(realNumber(true))
         ->group(group);

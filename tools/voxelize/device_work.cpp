@@ -91,6 +91,8 @@ Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted, 
             SolidFacts{rule, !request.solidRule, require(voxelizer->downloadSolidReport())};
     if (!wanted.color && !wanted.normal)
         return {std::move(bits), std::nullopt};
+    // Until now their number was an estimate.
+    checkMemory(plan, static_cast<double>(record.voxels->set), request.memoryLimitBytes);
     if (grid.hasLocalRanges()) // Attributes are those of the voxels that the files hold.
         require(grid.upload(bits));
     record.voxels->hasColors = wanted.color;

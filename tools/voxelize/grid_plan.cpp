@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <unistd.h>
 
@@ -89,6 +90,19 @@ Axis bestAxis(const glm::dvec3& columns) {
     return static_cast<Axis>(best);
 }
 
+/// Of a closed mesh; of others what its triangles and the low corner of its box span.
+double enclosedVolume(const TriangleMesh& mesh) {
+    const glm::dvec3 origin = mesh.bounds().min;
+    double sum = 0.0;
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const glm::dvec3 a = glm::dvec3(mesh.positions[triangle.x]) - origin;
+        const glm::dvec3 b = glm::dvec3(mesh.positions[triangle.y]) - origin;
+        const glm::dvec3 c = glm::dvec3(mesh.positions[triangle.z]) - origin;
+        sum += glm::dot(a, glm::cross(b, c)) / 6.0;
+    }
+    return std::abs(sum);
+}
+
 } // namespace
 
 double GridPlan::bytes() const {
@@ -111,16 +125,43 @@ GridPlan planGrid(const GridRequest& request, const TriangleMesh& mesh) {
     return plan;
 }
 
-void checkMemory(const GridPlan& plan, double limitBytes) {
-    const double needed = 2.0 * plan.bytes();
-    if (needed > limitBytes)
-        throw Failure(
-            ExitCode::Unsupported,
-            fmt::format("plan grid: {} x {} x {} voxels take {:.0f} MiB on device and host "
-                        "together, expected at most {:.0f} MiB; use larger voxels or "
-                        "--memory-limit",
-                        plan.counts.x, plan.counts.y, plan.counts.z, std::ceil(needed / 1048576.0),
-                        std::floor(limitBytes / 1048576.0)));
+double expectedVoxels(const GridPlan& plan, const TriangleMesh& mesh, Coverage coverage) {
+    const double all = static_cast<double>(plan.counts.x) * plan.counts.y * plan.counts.z;
+    double voxels = plan.coveredColumns.x + plan.coveredColumns.y + plan.coveredColumns.z;
+    if (coverage == Coverage::Solid)
+        voxels += enclosedVolume(mesh) / (plan.voxelSize.x * plan.voxelSize.y * plan.voxelSize.z);
+    return std::min(voxels, all);
+}
+
+double attributeBytes(const GridPlan& plan, double voxels) {
+    constexpr double kRecord = 16.0; // On the device.
+    constexpr double kSums = 64.0;   // Beside it, for a batch of voxels at a time.
+    constexpr double kBatchVoxels = 1u << 23u;
+    constexpr double kHost = 22.0;         // AttributeGrid.
+    constexpr double kRanks = 12.0 / 16.0; // On device and host, for each byte of the grid.
+    if (voxels <= 0.0)
+        return 0.0;
+    return (kRecord + kHost) * voxels + kSums * std::min(voxels, kBatchVoxels) +
+           kRanks * plan.bytes();
+}
+
+void checkMemory(const GridPlan& plan, double attributeVoxels, double limitBytes) {
+    const double attributes = attributeBytes(plan, attributeVoxels);
+    const double needed = 2.0 * plan.bytes() + attributes;
+    if (needed <= limitBytes)
+        return;
+    const auto mebibytes = [](double bytes) { return std::ceil(bytes / 1048576.0); };
+    std::string text =
+        fmt::format("plan grid: {} x {} x {} voxels take {:.0f} MiB on device and host together",
+                    plan.counts.x, plan.counts.y, plan.counts.z, mebibytes(needed));
+    if (attributes > 0.0)
+        text += fmt::format(", {:.0f} MiB of them for the attributes of about {:.0f} set voxels",
+                            mebibytes(attributes), attributeVoxels);
+    throw Failure(ExitCode::Unsupported,
+                  fmt::format("{}, expected at most {:.0f} MiB; use larger voxels{} or "
+                              "--memory-limit",
+                              text, std::floor(limitBytes / 1048576.0),
+                              attributes > 0.0 ? ", --attributes none" : ""));
 }
 
 double physicalMemory() {

@@ -3,6 +3,7 @@
 #include <lamina/core/box.hpp>
 #include <lamina/core/triangle_mesh.hpp>
 #include <lamina/grid/grid_transform.hpp>
+#include <lamina/voxelize/voxelizer.hpp>
 
 #include <glm/vec3.hpp>
 
@@ -44,9 +45,18 @@ struct GridPlan {
 /// voxels to count).
 [[nodiscard]] GridPlan planGrid(const GridRequest& request, const TriangleMesh& mesh);
 
-/// Throws Failure (Unsupported) if the grid, once on the device and once on the host, takes more
-/// than `limitBytes`.
-void checkMemory(const GridPlan& plan, double limitBytes);
+/// About how many voxels a coverage will set, if the mesh lies inside the grid: as many as planes
+/// of the triangles' areas touch; for a solid, those inside too. More where surfaces lie close
+/// together, fewer where triangles are thin slivers or a mesh without inside is made solid.
+[[nodiscard]] double expectedVoxels(const GridPlan& plan, const TriangleMesh& mesh,
+                                    Coverage coverage);
+
+/// Memory for the attributes of so many set voxels: while they are made, read back and written.
+[[nodiscard]] double attributeBytes(const GridPlan& plan, double voxels);
+
+/// Throws Failure (Unsupported) if the grid, once on the device and once on the host, and the
+/// attributes of `attributeVoxels` voxels (0: none are made) take more than `limitBytes`.
+void checkMemory(const GridPlan& plan, double attributeVoxels, double limitBytes);
 
 /// Bytes of memory of this machine.
 [[nodiscard]] double physicalMemory();

@@ -212,11 +212,15 @@ void run(const Request& request) {
     record.grid = planGrid(request.grid, mesh);
 
     if (request.compare) {
-        checkMemory(*record.grid, request.memoryLimitBytes);
+        checkMemory(*record.grid, 0.0, request.memoryLimitBytes);
         compareOnDevice(request, mesh, clock, record);
     } else if (!request.infoOnly) {
-        checkMemory(*record.grid, request.memoryLimitBytes);
         const AttributeRequest wanted = wantedAttributes(request, record.mesh.hasColors);
+        checkMemory(*record.grid,
+                    wanted.color || wanted.normal
+                        ? expectedVoxels(*record.grid, mesh, request.coverage)
+                        : 0.0,
+                    request.memoryLimitBytes);
         const Voxels voxels = voxelizeOnDevice(request, wanted, std::move(mesh), clock, record);
         writeVoxels(request, voxels, clock, record);
         if (request.preview)
