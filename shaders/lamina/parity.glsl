@@ -11,7 +11,8 @@
 // sprite's depth range; layers are crossings of a column's centre line with the surface, nearest first.
 //
 // A point is answered by the column it lies in: what is nearer to the surface than a column's width may
-// be wrong; laminaParityClassify() tells, laminaParityInsideRefined() asks other directions.
+// be wrong; laminaParityClassify() tells, laminaParityInsideRefined() asks other directions. To decide
+// whole triangles before they are drawn: lamina/parity_boxes.glsl.
 // Precision: single.
 #ifndef LAMINA_PARITY_GLSL
 #define LAMINA_PARITY_GLSL
@@ -77,6 +78,14 @@ bool laminaParityHolds(int sprite, vec3 place) {
 // The column of a place in the box; its upper bounds belong to the last column.
 ivec2 laminaParityColumn(int sprite, vec3 place) {
     return min(ivec2(place.xy), ivec2(laminaParitySprite[sprite].size.xy) - 1);
+}
+
+// The column that a place lies in, also beside the sprite; of places farther away, or that are not
+// numbers, one whose neighbours the sprite does not have either.
+ivec2 laminaParityColumnAround(int sprite, vec2 place) {
+    vec2 columns = vec2(laminaParitySprite[sprite].size.xy);
+    bool isNear = all(greaterThanEqual(place, vec2(-2.0))) && all(lessThanEqual(place, columns + 2.0));
+    return isNear ? ivec2(floor(place)) : ivec2(-4);
 }
 
 // Layers at or before a depth in [0,1]. Few are marched through until one lies beyond the depth
@@ -155,7 +164,7 @@ bool laminaParityIsBoundary(uint mask, int count, int shape, int rule) {
 float laminaParityShare(int sprite, vec3 place) {
     ivec2 columns = ivec2(laminaParitySprite[sprite].size.xy);
     vec2 corner = place.xy - 0.5;
-    ivec2 low = ivec2(floor(corner));
+    ivec2 low = laminaParityColumnAround(sprite, corner);
     vec2 weight = corner - vec2(low);
     vec4 weights = vec4((1.0 - weight.x) * (1.0 - weight.y), weight.x * (1.0 - weight.y),
                         (1.0 - weight.x) * weight.y, weight.x * weight.y);
@@ -167,7 +176,8 @@ float laminaParityShare(int sprite, vec3 place) {
                 before[i] = laminaParityLayersBefore(sprite, column, place.z);
         }
     }
-    float share = dot(weights, vec4(before & 1));
+    bool isAnyInside = any(notEqual(before & 1, ivec4(0)));
+    float share = isAnyInside ? dot(weights, vec4(before & 1)) : 0.0;
     int least = min(min(before.x, before.y), min(before.z, before.w));
     int most = max(max(before.x, before.y), max(before.z, before.w));
     bool isWithin = all(greaterThanEqual(low, ivec2(0))) && all(lessThan(low, columns - 1));
@@ -186,7 +196,8 @@ float laminaParityShare(int sprite, vec3 place) {
 // Inside by `directions` sprites of one shape, sprite `first` and those after it, whose axes differ. The
 // first whose columns around the point agree, or can be interpolated, decides; at surfaces nearly
 // parallel to its axis they do not ([TD08] 5.2: fuzzy edges). Where no direction decides, the mean of
-// their shares does. One direction interpolates, which is enough for smooth surfaces.
+// their shares does. One direction interpolates, which is enough for smooth surfaces; three, along
+// spriteAxes(), are right on 99 % of a shape's bounds with 128 columns and 99.9 % with 1024.
 bool laminaParityInsideRefined(int first, int directions, vec3 world) {
     const float kRounding = 1.0e-5;
     float sum = 0.0;
@@ -217,7 +228,7 @@ int laminaParityClassify(int sprite, vec3 world) {
     vec3 place = laminaParityPlace(sprite, world);
     float reach = laminaParitySprite[sprite].scale.y;
     ivec2 columns = ivec2(laminaParitySprite[sprite].size.xy);
-    ivec2 center = ivec2(floor(place.xy));
+    ivec2 center = laminaParityColumnAround(sprite, place.xy);
     int insideCount = 0;
     for (int i = 0; i < 9; ++i) {
         ivec2 column = center + ivec2(i % 3, i / 3) - 1;
@@ -234,7 +245,17 @@ int laminaParityClassify(int sprite, vec3 world) {
     return (insideCount == 9) != laminaParityInverted(sprite) ? LAMINA_PARITY_INSIDE : LAMINA_PARITY_OUTSIDE;
 }
 
-// The same for a combination: border where the sprites at whose border the point lies decide.
+// The class of a combination: border where the sprites of `border` decide, whose bits in `mask` are 0.
+int laminaParityCombineClasses(uint mask, uint border, int rule) {
+    // Union and intersection grow with every bit. The difference grows with the first and shrinks with
+    // the others: its extremes are these.
+    uint most = rule == LAMINA_PARITY_DIFFERENCE ? mask | (border & 1u) : mask | border;
+    uint least = rule == LAMINA_PARITY_DIFFERENCE ? mask | (border & ~1u) : mask;
+    if (laminaParityCombine(most, rule) != laminaParityCombine(least, rule))
+        return LAMINA_PARITY_BORDER;
+    return laminaParityCombine(most, rule) ? LAMINA_PARITY_INSIDE : LAMINA_PARITY_OUTSIDE;
+}
+
 int laminaParityClassifyCombined(vec3 world, int rule) {
     uint mask = 0u;
     uint border = 0u;
@@ -243,13 +264,7 @@ int laminaParityClassifyCombined(vec3 world, int rule) {
         mask |= answer == LAMINA_PARITY_INSIDE ? 1u << uint(sprite) : 0u;
         border |= answer == LAMINA_PARITY_BORDER ? 1u << uint(sprite) : 0u;
     }
-    // Union and intersection grow with every bit. The difference grows with the first and shrinks with
-    // the others: its extremes are these.
-    uint most = rule == LAMINA_PARITY_DIFFERENCE ? mask | (border & 1u) : mask | border;
-    uint least = rule == LAMINA_PARITY_DIFFERENCE ? mask | (border & ~1u) : mask;
-    if (laminaParityCombine(most, rule) != laminaParityCombine(least, rule))
-        return LAMINA_PARITY_BORDER;
-    return laminaParityCombine(most, rule) ? LAMINA_PARITY_INSIDE : LAMINA_PARITY_OUTSIDE;
+    return laminaParityCombineClasses(mask, border, rule);
 }
 
 // What lies around a point along the sprite's axis.
@@ -263,7 +278,8 @@ struct LaminaParityProbe {
 // Crossings that coincide in pairs bound nothing and are passed over.
 LaminaParityProbe laminaParityProbePlace(int sprite, ivec2 column, float depth) {
     LaminaParityProbe probe = LaminaParityProbe(laminaParityInverted(sprite), 0, kLaminaParityNone, kLaminaParityNone);
-    if (sprite >= laminaParityCount() || any(lessThan(column, ivec2(0))) ||
+    bool isNumber = abs(depth) < kLaminaParityNone;
+    if (sprite >= laminaParityCount() || !isNumber || any(lessThan(column, ivec2(0))) ||
         any(greaterThanEqual(column, ivec2(laminaParitySprite[sprite].size.xy))))
         return probe;
     int layers = int(laminaParitySprite[sprite].size.z);
@@ -290,7 +306,7 @@ LaminaParityProbe laminaParityProbePlace(int sprite, ivec2 column, float depth) 
 
 LaminaParityProbe laminaParityProbe(int sprite, vec3 world) {
     vec3 place = laminaParityPlace(sprite, world);
-    return laminaParityProbePlace(sprite, ivec2(floor(place.xy)), place.z);
+    return laminaParityProbePlace(sprite, laminaParityColumnAround(sprite, place.xy), place.z);
 }
 
 // Distance to the nearest crossing of the point's column, along the sprite's axis; negative inside.
@@ -305,7 +321,7 @@ float laminaParityDistance(int sprite, vec3 world) {
 // where they have no crossing. For points within some columns of the surface.
 vec3 laminaParityNormal(int sprite, vec3 world) {
     vec3 place = laminaParityPlace(sprite, world);
-    ivec2 column = ivec2(floor(place.xy));
+    ivec2 column = laminaParityColumnAround(sprite, place.xy);
     float range = laminaParitySprite[sprite].scale.x;
     LaminaParityProbe probe = laminaParityProbePlace(sprite, column, place.z);
     float here = min(probe.before, probe.after);

@@ -7,7 +7,9 @@
 //      so that 2048 layers stay below 65,535 steps;
 //   3. an odd number of crossings: the shape is open there. It is taken to begin at the near depth, as
 //      Coverage::Solid does: a layer at depth 0 comes first;
-//   4. layers without a crossing say so. Columns with more crossings than layers become empty.
+//   4. layers without a crossing say so. Columns with more crossings than layers become empty;
+//   5. the group, a block of columns, leaves its ranges in the texture's last layer. Atomic: its columns
+//      narrow them together.
 // LAMINA_PARITY_LAYERED 0: only the report.
 // permute LAMINA_PARITY_LAYERED = 0 1
 // permute LAMINA_PARITY_SORTED = 0 1
@@ -26,6 +28,11 @@ shared uint groupLayers;
 shared uint groupOdd;
 shared uint groupOverflow;
 shared uint groupCrossings;
+#if LAMINA_PARITY_LAYERED
+// Depths are not negative: their bits are ordered as they are.
+shared uint groupRanges[LAMINA_PARITY_RANGES];
+shared uint groupFilled; // Columns that are not empty.
+#endif
 
 ivec2 column = ivec2(gl_GlobalInvocationID.xy);
 
@@ -85,7 +92,36 @@ void sortLayers(int count) {
     }
 }
 
-void resolveColumn(int crossings, int layers) {
+#if LAMINA_PARITY_LAYERED
+// Layers of the column in use are [0, used), an even number.
+void narrowRanges(int used) {
+    if (used == 0)
+        return;
+    uint first = floatBitsToUint(layerAt(0));
+    atomicAdd(groupFilled, 1u);
+    atomicMin(groupRanges[LAMINA_PARITY_FIRST], first);
+    atomicMax(groupRanges[LAMINA_PARITY_LAST], floatBitsToUint(layerAt(used - 1)));
+    atomicMax(groupRanges[LAMINA_PARITY_ENTER], first);
+    atomicMin(groupRanges[LAMINA_PARITY_LEAVE], floatBitsToUint(layerAt(1)));
+}
+
+// By the first invocations of the group, when its columns are done.
+void storeRanges() {
+    int range = int(gl_LocalInvocationIndex);
+    ivec2 block = ivec2(gl_WorkGroupID.xy);
+    ivec2 texel = 2 * block + ivec2(range & 1, range >> 1);
+    ivec3 size = imageSize(laminaLayers);
+    if (range >= LAMINA_PARITY_RANGES || any(greaterThanEqual(texel, size.xy)))
+        return;
+    ivec2 columns = min(size.xy - LAMINA_PARITY_BLOCK * block, ivec2(LAMINA_PARITY_BLOCK));
+    bool isNowhereInside = range == LAMINA_PARITY_LEAVE && int(groupFilled) < columns.x * columns.y;
+    float value = isNowhereInside ? 0.0 : uintBitsToFloat(groupRanges[range]);
+    imageStore(laminaLayers, ivec3(texel, size.z - 1), vec4(value));
+}
+#endif
+
+// Returns the number of layers in use.
+int resolveColumn(int crossings, int layers) {
     int used = crossings;
     if (crossings > layers) {
         used = 0;
@@ -100,6 +136,7 @@ void resolveColumn(int crossings, int layers) {
     }
     for (int layer = used; layer < layers; ++layer)
         setLayer(layer, LAMINA_PARITY_NO_LAYER);
+    return used;
 }
 
 void main() {
@@ -108,6 +145,13 @@ void main() {
         groupOdd = 0u;
         groupOverflow = 0u;
         groupCrossings = 0u;
+#if LAMINA_PARITY_LAYERED
+        groupRanges[LAMINA_PARITY_FIRST] = floatBitsToUint(LAMINA_PARITY_NO_LAYER);
+        groupRanges[LAMINA_PARITY_LAST] = 0u;
+        groupRanges[LAMINA_PARITY_ENTER] = 0u;
+        groupRanges[LAMINA_PARITY_LEAVE] = floatBitsToUint(LAMINA_PARITY_NO_LAYER);
+        groupFilled = 0u;
+#endif
     }
     barrier();
     if (all(lessThan(column, imageSize(laminaCounts)))) {
@@ -118,14 +162,17 @@ void main() {
             atomicAdd(groupCrossings, crossings);
         }
 #if LAMINA_PARITY_LAYERED
-        int layers = imageSize(laminaLayers).z;
+        int layers = imageSize(laminaLayers).z - 1;
         if (crossings > uint(layers))
             atomicAdd(groupOverflow, 1u);
-        resolveColumn(int(crossings), layers);
+        narrowRanges(resolveColumn(int(crossings), layers));
 #endif
     }
     // The group's numbers are complete.
     barrier();
+#if LAMINA_PARITY_LAYERED
+    storeRanges();
+#endif
     if (gl_LocalInvocationIndex != 0u || groupCrossings == 0u)
         return;
     atomicMax(laminaReport.layers, groupLayers);

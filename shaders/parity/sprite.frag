@@ -77,7 +77,7 @@ void main() {
     imageAtomicAdd(laminaCounts, column, 1u);
 #elif LAMINA_PARITY_PASS == LAMINA_PARITY_PASS_GATHER
     int layer = int(imageAtomicAdd(laminaCounts, column, 1u));
-    if (layer < imageSize(laminaLayers).z)
+    if (layer < imageSize(laminaLayers).z - 1) // the last one is for the blocks
         imageStore(laminaLayers, ivec3(column, layer), vec4(depthOf(triangle, center)));
 #else
     laminaLayer = depthOf(triangle, center);

@@ -27,7 +27,7 @@ Result<gl::Texture> DepthSpriteData::allocate(const GridTransform& wanted,
     if (transform && glm::uvec2(transform->size()) == glm::uvec2(size) && layers == wantedLayers)
         return gl::Texture();
     auto created = gl::createTextureArray(
-        device, GL_R32F, sizeof(float), size.x, size.y, wantedLayers,
+        device, GL_R32F, sizeof(float), size.x, size.y, wantedLayers + 1,
         "depth sprite of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
             " columns, " + std::to_string(wantedLayers) + " layers",
         "lamina depth sprite");
@@ -72,7 +72,8 @@ Result<DepthSprite> DepthSprite::create(const Device& device) {
 }
 
 const GridTransform* DepthSprite::transform() const {
-    return mData->transform ? &*mData->transform : nullptr;
+    // Also of a moved-from sprite, which sets and downloads then refuse.
+    return mData && mData->transform ? &*mData->transform : nullptr;
 }
 std::uint32_t DepthSprite::layers() const {
     return mData->layers;
@@ -85,18 +86,19 @@ std::uint64_t DepthSprite::gpuBytes() const {
 }
 
 std::uint64_t DepthSprite::bytesFor(const GridTransform& transform, std::uint32_t layers) {
-    return sizeof(float) * std::uint64_t{transform.size().x} * transform.size().y * layers +
+    return sizeof(float) * std::uint64_t{transform.size().x} * transform.size().y *
+               (std::uint64_t{layers} + 1) +
            sizeof(shared::LaminaSpriteReport);
 }
 
 Result<SpriteReport> DepthSprite::downloadReport() const {
-    if (!mData->transform)
+    if (!transform())
         return notBuilt("sprite report");
     return detail::downloadReport(*mData->device, mData->report);
 }
 
 Result<SpriteLayers> DepthSprite::download() const {
-    if (!mData->transform)
+    if (!transform())
         return notBuilt("download of a depth sprite");
     gl::DeviceState& device = *mData->device;
     const glm::uvec3 size = mData->transform->size();

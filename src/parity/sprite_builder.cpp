@@ -40,7 +40,8 @@ SlicemapStage layerStage(SpriteMethod method) {
 }
 
 std::uint32_t evenLayers(std::uint32_t layers) {
-    return std::max(layers + (layers & 1u), 2u);
+    constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
+    return layers > kMost ? kMost : std::max(layers + (layers & 1u), 2u);
 }
 
 } // namespace

@@ -95,4 +95,9 @@ std::span<const glm::dvec3> spriteDirections() {
     return directions;
 }
 
+std::span<const glm::dvec3> spriteAxes() {
+    static constexpr glm::dvec3 kAxes[] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
+    return kAxes;
+}
+
 } // namespace lamina

@@ -5,16 +5,13 @@
 
 #include <lamina/gl/shaders.hpp>
 
-#include <reference/crossings.hpp>
 #include <reference/shapes.hpp>
 
 #include <gmock/gmock.h>
 
-#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <cmath>
-#include <cstring>
+#include <limits>
 
 namespace lamina {
 namespace {
@@ -25,15 +22,6 @@ using test::kUnitBox;
 using test::ParityQueryGlTest;
 using test::parityText;
 using testing::HasSubstr;
-
-std::vector<std::uint32_t> masks(const Device& device, const SpriteSet& set,
-                                 std::span<const glm::vec3> points,
-                                 const PointQuery& query = {.answer = PointAnswer::Masks}) {
-    const auto bytes = PointClassifier::create(device).value().download(set, points, query).value();
-    std::vector<std::uint32_t> words(bytes.size() / 4);
-    std::memcpy(words.data(), bytes.data(), bytes.size());
-    return words;
-}
 
 TEST_F(ParityQueryGlTest, EveryStageAndTheHostGiveTheSameAnswers) {
     const TriangleMesh knot = ref::makeTorusKnot({0, 0, 0}, 0.55f, 0.12f, 2, 3, 256, 24);
@@ -112,7 +100,7 @@ void main() {
 
     const auto computed =
         ask(set, points, "vec4 ask(vec3 world) { return vec4(laminaParityMask(world)); }");
-    const auto batch = masks(device(), set, points);
+    const auto batch = masks(set, points);
     const SpriteLayers hosts[] = {first.sprite.download().value(),
                                   second.sprite.download().value()};
     std::size_t roundings = 0;
@@ -147,7 +135,7 @@ TEST_F(ParityQueryGlTest, SpritesMoveAndTurnInsideOut) {
         {.sprite = &built.sprite, .localToWorld = placement, .inverted = true}};
     ASSERT_TRUE(set.update(instances));
     const auto points = test::randomPoints({{-2, -2, -2}, {2, 2, 2}}, 20000, 3);
-    const auto found = masks(device(), set, points);
+    const auto found = masks(set, points);
     const glm::dmat4 back = glm::inverse(placement);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -170,7 +158,7 @@ TEST_F(ParityQueryGlTest, ThirtyTwoSpritesAnswerTogether) {
     std::vector<glm::vec3> points;
     for (int x = -1; x < 35; ++x)
         points.emplace_back(static_cast<float>(x) + 0.5f, 0.5f, 0.5f);
-    const auto found = masks(device(), set, points);
+    const auto found = masks(set, points);
     for (int x = -1; x < 35; ++x) {
         std::uint64_t expected = 0;
         for (int s = x - 1; s <= x; ++s)
@@ -182,104 +170,23 @@ TEST_F(ParityQueryGlTest, ThirtyTwoSpritesAnswerTogether) {
     ASSERT_FALSE(tooMany);
     EXPECT_THAT(tooMany.error().text, HasSubstr("expected at most 32 sprites, found 33"));
     EXPECT_EQ(set.size(), 32u);
-    const SpriteInstance none[] = {{}};
-    EXPECT_THAT(set.update(none).error().text,
-                HasSubstr("sprite 0: expected a sprite that was built"));
+    auto unbuilt = DepthSprite::create(device()).value();
+    auto moved = DepthSprite::create(device()).value();
+    const DepthSprite target = std::move(moved);
+    for (const DepthSprite* missing :
+         {static_cast<const DepthSprite*>(nullptr), static_cast<const DepthSprite*>(&unbuilt),
+          static_cast<const DepthSprite*>(&moved)}) {
+        const SpriteInstance none[] = {{.sprite = missing}};
+        EXPECT_THAT(set.update(none).error().text,
+                    HasSubstr("sprite 0: expected a sprite that was built"));
+    }
     const SpriteInstance flat[] = {
         {.sprite = &built.sprite,
          .localToWorld = glm::scale(glm::dmat4(1.0), glm::dvec3(1, 1, 0))}};
     EXPECT_THAT(set.update(flat).error().text, HasSubstr("invertible localToWorld"));
     // A set without sprites contains nothing.
     ASSERT_TRUE(set.update({}));
-    EXPECT_EQ(masks(device(), set, points), std::vector<std::uint32_t>(points.size()));
-}
-
-TEST_F(ParityQueryGlTest, RulesAndFormatsAgreeWithMasks) {
-    const TriangleMesh ball = ref::makeIcosphere({0, 0, 0}, 0.6f, 3);
-    const BuiltSprite built(device(), ball, fitSprite(ball.bounds(), {0, 1, 0}, 100).value());
-    std::vector<SpriteInstance> instances;
-    for (const double x : {-0.3, 0.0, 0.3})
-        instances.push_back({.sprite = &built.sprite,
-                             .localToWorld = glm::translate(glm::dmat4(1.0), {x, 0.1, 0})});
-    auto set = SpriteSet::create(device()).value();
-    ASSERT_TRUE(set.update(instances));
-    auto classifier = PointClassifier::create(device()).value();
-    const auto all = test::randomPoints(kUnitBox, 1000, 9);
-    for (const std::size_t count : {1u, 3u, 4u, 31u, 32u, 33u, 127u, 1000u}) {
-        const std::span points(all.data(), count);
-        const auto mask = masks(device(), set, points);
-        for (const SpriteRule rule :
-             {SpriteRule::Union, SpriteRule::Intersection, SpriteRule::Difference}) {
-            const auto bytes =
-                classifier.download(set, points, {.answer = PointAnswer::Bytes, .rule = rule})
-                    .value();
-            const auto bits =
-                classifier.download(set, points, {.answer = PointAnswer::Bits, .rule = rule})
-                    .value();
-            ASSERT_EQ(bytes.size(), (count + 3) / 4 * 4);
-            ASSERT_EQ(bits.size(), (count + 31) / 32 * 4);
-            for (std::size_t i = 0; i < count; ++i) {
-                const bool expected = rule == SpriteRule::Union          ? mask[i] != 0
-                                      : rule == SpriteRule::Intersection ? mask[i] == 7
-                                                                         : mask[i] == 1;
-                ASSERT_EQ(bytes[i], expected ? 1 : 0) << i;
-                ASSERT_EQ((bits[i / 8] >> (i % 8) & 1) != 0, expected) << i;
-            }
-            for (std::size_t i = count; i < bits.size() * 8; ++i)
-                ASSERT_EQ(bits[i / 8] >> (i % 8) & 1, 0) << "past the last point";
-        }
-    }
-    EXPECT_TRUE(classifier.download(set, {}, {}).value().empty());
-}
-
-TEST_F(ParityQueryGlTest, PointsOfTheHostsBuffersAreReadInPlace) {
-    const TriangleMesh ball = ref::makeIcosphere({0, 0, 0}, 0.8f, 3);
-    const BuiltSprite built(device(), ball, fitSprite(ball.bounds(), {0, 0, 1}, 100).value());
-    const DepthSprite* sprites[] = {&built.sprite};
-    const SpriteSet set = test::spriteSet(device(), sprites);
-    const auto points = test::randomPoints(kUnitBox, 500, 2);
-    auto classifier = PointClassifier::create(device()).value();
-    const auto expected = classifier.download(set, points, {.answer = PointAnswer::Bits}).value();
-    // Particles of 28 bytes, from byte 20 on; answers from byte 12 on between sentinels.
-    std::vector<std::uint32_t> particles(5 + 7 * points.size(), 0xffffffffu);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        std::memcpy(particles.data() + 5 + 7 * i, &points[i], sizeof points[i]);
-    std::vector<std::uint32_t> answers(3 + 16 + 1, 0xabababab);
-    GLuint buffers[2];
-    gl().CreateBuffers(2, buffers);
-    gl().NamedBufferData(buffers[0], static_cast<GLsizeiptr>(particles.size() * 4 - 16),
-                         particles.data(), GL_STATIC_DRAW);
-    gl().NamedBufferData(buffers[1], static_cast<GLsizeiptr>(answers.size() * 4), answers.data(),
-                         GL_STATIC_DRAW);
-    PointBuffer input{.buffer = buffers[0], .offsetBytes = 20, .strideBytes = 28, .count = 500};
-    ASSERT_TRUE(classifier.classify(set, input, {.answer = PointAnswer::Bits}, buffers[1], 12));
-    gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    gl().GetNamedBufferSubData(buffers[1], 0, static_cast<GLsizeiptr>(answers.size() * 4),
-                               answers.data());
-    EXPECT_EQ(std::memcmp(answers.data() + 3, expected.data(), 64), 0);
-    EXPECT_EQ(answers[2], 0xababababu);
-    EXPECT_EQ(answers[19], 0xababababu);
-
-    const auto errorOf = [&](const PointBuffer& from, std::uint64_t offset, PointQuery query = {}) {
-        const auto done = classifier.classify(set, from, query, buffers[1], offset);
-        EXPECT_FALSE(done);
-        return done ? std::string() : done.error().text;
-    };
-    EXPECT_THAT(errorOf({.buffer = 0, .count = 1}, 0),
-                HasSubstr("GL buffers of points and answers"));
-    EXPECT_THAT(errorOf({.buffer = buffers[0], .strideBytes = 8, .count = 1}, 0),
-                HasSubstr("stride 8"));
-    EXPECT_THAT(errorOf({.buffer = buffers[0], .count = 1}, 2), HasSubstr("answer offset 2"));
-    input.count = 501;
-    EXPECT_THAT(errorOf(input, 0), HasSubstr("a buffer that holds 501 points"));
-    input.count = 500;
-    EXPECT_THAT(errorOf(input, 0, {.answer = PointAnswer::Masks}),
-                HasSubstr("2000 bytes for the answers"));
-    EXPECT_THAT(errorOf(input, 0, {.directions = 2}),
-                HasSubstr("found 2 directions and 1 sprites"));
-    EXPECT_THAT(errorOf(input, 0, {.answer = PointAnswer::Classes, .directions = 1}),
-                HasSubstr("no classes with them"));
-    gl().DeleteBuffers(2, buffers);
+    EXPECT_EQ(masks(set, points), std::vector<std::uint32_t>(points.size()));
 }
 
 TEST_F(ParityQueryGlTest, PointsWithoutAPlaceAreOutside) {
@@ -294,7 +201,22 @@ TEST_F(ParityQueryGlTest, PointsWithoutAPlaceAreOutside) {
     const std::vector<glm::vec3> points = {{nan, 0, 0},      {0, nan, 0},       {0, 0, nan},
                                            {infinity, 0, 0}, {0, -infinity, 0}, {1e38f, 0, 0},
                                            {0, 0, 5},        {0, 0, 0}};
-    EXPECT_EQ(masks(device(), set, points), (std::vector<std::uint32_t>{2, 2, 2, 2, 2, 2, 2, 1}));
+    const std::vector<std::uint32_t> expected = {2, 2, 2, 2, 2, 2, 2, 1};
+    EXPECT_EQ(masks(set, points), expected);
+    EXPECT_EQ(masks(set, points, {.answer = PointAnswer::Masks, .directions = 1}), expected);
+    // The shader's other questions.
+    const auto found = ask(set, points, R"(
+vec4 ask(vec3 world) {
+    return vec4(laminaParityClassify(0, world), laminaParityClassify(1, world),
+                laminaParityProbe(0, world).inside, laminaParityNormal(0, world) == vec3(0.0));
+})");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool isInside = expected[i] == 1;
+        EXPECT_EQ(found[i].x, isInside ? 1 : 0) << i;
+        EXPECT_EQ(found[i].y, isInside ? 0 : 1) << i;
+        EXPECT_EQ(found[i].z, isInside ? 1 : 0) << i;
+        EXPECT_EQ(found[i].w, isInside || i == 6 ? 0 : 1) << i;
+    }
 }
 
 TEST_F(ParityQueryGlTest, SharedLayoutsMatchTheLinkedProgram) {

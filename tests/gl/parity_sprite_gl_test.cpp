@@ -347,6 +347,7 @@ TEST_F(ParitySpriteGlTest, ErrorsSayWhatIsWrong) {
     ASSERT_FALSE(huge);
     EXPECT_EQ(huge.error().code, ErrorCode::DeviceLimit);
     EXPECT_THAT(huge.error().text, HasSubstr("1048576 layers"));
+    EXPECT_EQ(builder.build({}, transform, ~0u, sprite).error().code, ErrorCode::DeviceLimit);
     const auto wide = GridTransform::box(kUnitBox, {1u << 20u, 8, 1}).value();
     EXPECT_THAT(builder.build({}, wide, 2, sprite).error().text,
                 HasSubstr("columns, found 1048576"));

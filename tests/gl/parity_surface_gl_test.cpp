@@ -83,6 +83,48 @@ vec4 ask(vec3 world) {
     EXPECT_EQ(boundary[3], glm::vec4(1, 0, 0, 0)) << "on its other face, outside the first";
 }
 
+// What caps are cut by: a clip shape's surface is part of the combination's where the other shape
+// does not decide alone.
+TEST_F(ParitySurfaceGlTest, CutFacesLieWhereTheyBoundTheCombination) {
+    constexpr float kRadius = 0.6f;
+    const glm::vec3 centers[] = {{-0.25f, 0.0f, 0.1f}, {0.2f, 0.15f, 0.0f}};
+    const TriangleMesh ball = ref::makeIcosphere({0, 0, 0}, kRadius, 5);
+    const auto transform = fitSprite(ball.bounds(), {0, 0, 1}, 256).value();
+    const BuiltSprite built(device(), ball, transform);
+    std::vector<SpriteInstance> instances;
+    for (const glm::vec3& center : centers)
+        instances.push_back({.sprite = &built.sprite,
+                             .localToWorld = glm::translate(glm::dmat4(1.0), glm::dvec3(center))});
+    auto set = SpriteSet::create(device()).value();
+    ASSERT_TRUE(set.update(instances));
+    const double diagonal = test::diagonalOf(transform);
+    for (int shape = 0; shape < 2; ++shape) {
+        std::vector<glm::vec3> points;
+        std::vector<bool> isInOther;
+        for (const glm::vec3& p : test::randomPoints(kUnitBox, 6000, 31)) {
+            const glm::vec3 point = centers[shape] + kRadius * glm::normalize(p);
+            const double away = glm::distance(point, centers[1 - shape]) - kRadius;
+            if (std::abs(away) < diagonal)
+                continue;
+            points.push_back(point);
+            isInOther.push_back(away < 0.0);
+        }
+        ASSERT_GT(points.size(), 5000u);
+        const auto found = ask(set, points, "const int shape = " + std::to_string(shape) + R"(;
+vec4 ask(vec3 world) {
+    uint mask = laminaParityMask(world);
+    return vec4(laminaParityIsBoundary(mask, 2, shape, LAMINA_PARITY_UNION),
+                laminaParityIsBoundary(mask, 2, shape, LAMINA_PARITY_INTERSECTION),
+                laminaParityIsBoundary(mask, 2, shape, LAMINA_PARITY_DIFFERENCE), 0.0);
+})");
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const bool isIn = isInOther[i];
+            // The first without the second: of the second's surface what lies in the first.
+            ASSERT_EQ(found[i], glm::vec4(!isIn, isIn, shape == 0 ? !isIn : isIn, 0)) << i;
+        }
+    }
+}
+
 TEST_F(ParitySurfaceGlTest, DistancesAreThoseOfTheColumnsCrossings) {
     const float radii[] = {0.9f, 0.7f, 0.4f};
     const TriangleMesh shells = ref::makeNestedShells({0, 0, 0}, radii, 4);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace lamina {
 namespace {
@@ -98,6 +99,14 @@ TEST(FitSprite, HoldsItsBox) {
 TEST(FitSprite, ErrorsSayWhatIsWrong) {
     EXPECT_THAT(fitSprite({}, {0, 0, 1}, 32).error().text, HasSubstr("a finite box"));
     EXPECT_THAT(fitSprite(kUnitBox, {0, 0, 0}, 32).error().text, HasSubstr("not zero"));
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        EXPECT_THAT(fitSprite(kUnitBox, {0, bad, 1}, 32).error().text,
+                    HasSubstr("a finite direction"));
+        EXPECT_THAT(fitSprite({{-1, -1, -1}, {1, bad, 1}}, {0, 0, 1}, 32).error().text,
+                    HasSubstr("a finite box"));
+    }
+    EXPECT_FALSE(fitSprite(kUnitBox, {0, 0, 1}, 32, 0)) << "no slices";
     EXPECT_THAT(fitSprite(kUnitBox, {0, 0, 1}, 3).error().text,
                 HasSubstr("at least 4 columns, found 3"));
 }

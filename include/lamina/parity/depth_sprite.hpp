@@ -30,9 +30,10 @@ struct SpriteReport {
 /// A volumetric depth sprite ([TD08] 3.1): a shape as the depths at which an orthographic camera's
 /// pixels, the columns, cross its surface.
 ///
-/// GL: a 2D array texture, GL_R32F, columns x by columns y, a layer per crossing, nearest first.
-/// Depths are linear, as fractions of the transform's depth range: 0 for crossings before it, 1.5
-/// beyond it; 2 where a column has no more crossings, and as the border. Shaders test points by
+/// GL: a 2D array texture, GL_R32F, columns x by columns y, a layer per crossing, nearest first,
+/// and one with the ranges of blocks of columns (lamina/parity_boxes.glsl). Depths are linear, as
+/// fractions of the transform's depth range: 0 for crossings before it, 1.5 beyond it; 2 where a
+/// column has no more crossings, and as the border. Shaders test points by
 /// `#include <lamina/parity.glsl>` and SpriteSet::bind(). Reused across frames: memory is allocated
 /// again only when columns or layers change. Move-only; see Device for threads and lifetime.
 class LAMINA_API DepthSprite {
@@ -46,7 +47,7 @@ public:
 
     /// Where the columns are, in the space of the sources it was built of; nothing before a build.
     [[nodiscard]] const GridTransform* transform() const;
-    /// Layers of the texture, an even number: crossings that a column can have.
+    /// Crossings that a column can have, an even number: the texture's layers but for the last.
     [[nodiscard]] std::uint32_t layers() const;
     /// GL name of the array texture; 0 before a build.
     [[nodiscard]] std::uint32_t texture() const;

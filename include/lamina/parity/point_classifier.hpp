@@ -34,7 +34,8 @@ struct PointQuery {
     SpriteRule rule = SpriteRule::Union;
     /// Sprites of one shape along different axes, that stand together in the set: s * directions
     /// and those after it are shape s, and masks have a bit per shape. Above 0:
-    /// laminaParityInsideRefined(), which finds the inside near surfaces parallel to an axis.
+    /// laminaParityInsideRefined(), which finds the inside near surfaces parallel to an axis; 3
+    /// with sprites along spriteAxes() is as accurate as it gets.
     /// 0: laminaParityInside(), a sprite a shape. Not for Classes.
     std::uint32_t directions = 0;
 };

@@ -28,4 +28,12 @@ namespace lamina {
 /// axes, the diagonals of the faces and of the corners of a cube; one of each opposite pair.
 [[nodiscard]] LAMINA_API std::span<const glm::dvec3> spriteDirections();
 
+/// The three axes z, x, y. Sprites of one shape along them, asked together
+/// (laminaParityInsideRefined(), PointQuery::directions = 3), are what accuracy needs: of a million
+/// random points in a shape's bounds at most 1 % are wrong with 128 columns and 0.1 % with 1024, on
+/// every shape tried; the plain test of one sprite is wrong on up to 2.3 % and 0.35 %, at walls
+/// parallel to its axis. Cost: three sprites to build and hold; a point asks four columns of the
+/// first sprite, and of the others only near a wall.
+[[nodiscard]] LAMINA_API std::span<const glm::dvec3> spriteAxes();
+
 } // namespace lamina

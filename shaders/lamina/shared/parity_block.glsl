@@ -10,6 +10,19 @@
 #define LAMINA_PARITY_NO_LAYER 2.0
 #define LAMINA_PARITY_BEYOND 1.5
 
+// Blocks of LAMINA_PARITY_BLOCK x LAMINA_PARITY_BLOCK columns, by which whole boxes are decided. The
+// texture's layer after the last crossing holds LAMINA_PARITY_RANGES numbers a block, of block (x,y) in
+// texels (2x, 2y) to (2x + 1, 2y + 1): before FIRST and from LAST on all columns are outside, from ENTER
+// up to LEAVE inside (none: ENTER >= LEAVE). Sprites of a single column or row have no such numbers.
+#define LAMINA_PARITY_BLOCK 8
+#define LAMINA_PARITY_RANGES 4
+#define LAMINA_PARITY_FIRST 0
+#define LAMINA_PARITY_LAST 1
+#define LAMINA_PARITY_ENTER 2
+#define LAMINA_PARITY_LEAVE 3
+// Boxes over more blocks each way are not decided.
+#define LAMINA_PARITY_BLOCK_REACH 4
+
 // LaminaSpriteConstants.size.w
 #define LAMINA_PARITY_INVERTED 1u
 
@@ -43,7 +56,8 @@
 #define LAMINA_PARITY_COUNT_IMAGE 1
 #define LAMINA_PARITY_PASS_BLOCK_BINDING 1
 #define LAMINA_PARITY_REPORT_BINDING 0
-#define LAMINA_PARITY_RESOLVE_GROUP 8
+// A group of the resolve pass is a block.
+#define LAMINA_PARITY_RESOLVE_GROUP LAMINA_PARITY_BLOCK
 
 // Bindings of the point kernel, and what it writes.
 #define LAMINA_PARITY_POINT_GROUP 64

@@ -6,6 +6,8 @@
 #include <lamina/gl/shaders.hpp>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,10 +16,11 @@ namespace lamina::test {
 
 inline const Box3 kUnitBox{{-1, -1, -1}, {1, 1, 1}};
 
-/// A shader of `count` sprites that follows `settings` and lamina/parity.glsl.
-inline std::string parityText(int count, const std::string& settings = {}) {
+/// A shader of `count` sprites that follows `settings` and `file`.
+inline std::string parityText(int count, const std::string& settings = {},
+                              const char* file = "lamina/parity.glsl") {
     return "#version 450 core\n#define LAMINA_PARITY_COUNT " + std::to_string(count) + "\n" +
-           settings + shaderSource("lamina/parity.glsl").value();
+           settings + shaderSource(file).value();
 }
 
 /// A host that asks lamina/parity.glsl about points.
@@ -25,11 +28,13 @@ class ParityQueryGlTest : public GlTest {
 protected:
     /// What a compute shader's `vec4 ask(vec3 world)` says of each point.
     std::vector<glm::vec4> ask(const SpriteSet& set, std::span<const glm::vec3> points,
-                               const std::string& function) {
+                               const std::string& function,
+                               const char* file = "lamina/parity.glsl") {
         const GLuint program =
             buildProgram({{GL_COMPUTE_SHADER, parityText(static_cast<int>(std::max(set.size(), 1u)),
                                                          "#define LAMINA_PARITY_BLOCK_BINDING 3\n"
-                                                         "#define LAMINA_PARITY_TEXTURE_UNIT 5\n") +
+                                                         "#define LAMINA_PARITY_TEXTURE_UNIT 5\n",
+                                                         file) +
                                                   function + R"(
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Points { float points[]; };
@@ -45,6 +50,15 @@ void main() {
                    static_cast<std::uint32_t>(points.size()));
         gl().DeleteProgram(program);
         return results;
+    }
+    /// What a batch says, a mask a point.
+    std::vector<std::uint32_t> masks(const SpriteSet& set, std::span<const glm::vec3> points,
+                                     const PointQuery& query = {.answer = PointAnswer::Masks}) {
+        const auto bytes =
+            PointClassifier::create(device()).value().download(set, points, query).value();
+        std::vector<std::uint32_t> words(bytes.size() / 4);
+        std::memcpy(words.data(), bytes.data(), bytes.size());
+        return words;
     }
 };
 
