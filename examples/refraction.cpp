@@ -209,7 +209,8 @@ double fresnel(double cosine) {
     return 0.5 * (s * s + p * p);
 }
 
-/// The vase ray-traced on the processor, pixel by pixel, over the picture.
+/// The vase ray-traced on the processor, pixel by pixel, over the picture. Like Lamina's models it
+/// follows the refracted or totally reflected light alone; only the first surface also mirrors.
 void traceVase(const Studio& studio, const Stage& stage, const glm::vec3& absorption) {
     std::vector<std::unique_ptr<example::GlassBody>> bodies;
     const auto profile = example::vaseProfile();

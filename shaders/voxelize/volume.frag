@@ -76,7 +76,7 @@ void main() {
     LaminaMaterialConstants material = laminaMaterialOf(uint(laminaLayerAndMaterial.y));
     laminaCount = 1.0 / 255.0;
     laminaAbsorption = material.optics.x;
-    laminaOptics = vec4(material.optics.yz, 0.0, 1.0);
+    laminaOptics = vec4(material.optics.yz, float(slice - (double(layer) + 0.5lf)), 1.0);
     laminaNormal = vec4(0.0);
     laminaColor = vec4(0.0);
 #if LAMINA_VOLUME_SURFACE

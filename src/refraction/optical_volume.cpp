@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kOperation = "refraction volume";
 constexpr GLuint kGroup = 8;
-/// Voxels of empty space around the object: filtered look-ups at its surface reach one.
+/// Voxels of empty space around the object: look-ups at its surface reach one.
 constexpr double kMargin = 2.0;
 /// lamina/shared/volume_block.glsl
 constexpr GLuint kVolumeUnits = 6;
@@ -45,21 +45,21 @@ Result<OpticalVolume> OpticalVolume::create(const Device& device, std::uint32_t 
     VolumeLayout layout;
     layout.count = VolumeFormat::None;
     layout.normal = VolumeFormat::RGBA16F;
-    auto normals = VolumeGrid::create(device, layout);
-    if (!normals)
-        return normals.error();
     layout.optics = VolumeFormat::RGBA16F;
+    auto planes = VolumeGrid::create(device, layout);
+    if (!planes)
+        return planes.error();
     layout.color = VolumeFormat::RGBA16F;
     auto optics = VolumeGrid::create(device, layout);
     if (!optics)
         return optics.error();
-    return OpticalVolume(device.state(), std::move(*voxelizer), std::move(*normals),
+    return OpticalVolume(device.state(), std::move(*voxelizer), std::move(*planes),
                          std::move(*optics), voxels);
 }
 
 Result<void> OpticalVolume::reserve() {
     const auto cube = [&](gl::Texture& texture, GLenum format, std::uint32_t bytes,
-                          std::uint32_t size, bool isFiltered) -> Result<void> {
+                          std::uint32_t size) -> Result<void> {
         if (texture)
             return {};
         auto made = gl::createTexture3d(mDevice, format, bytes, size, size, size, kOperation,
@@ -67,17 +67,14 @@ Result<void> OpticalVolume::reserve() {
         if (!made)
             return made.error();
         texture = std::move(*made);
-        if (isFiltered)
-            for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-                mDevice->gl.TextureParameteri(texture.id(), filter, GL_LINEAR);
         return {};
     };
-    if (auto made = cube(mNormals, GL_RGBA16F, 8, mVoxels, true); !made)
+    if (auto made = cube(mPlanes, GL_RGBA16F, 8, mVoxels); !made)
         return made;
     const std::uint32_t bricks = (mVoxels + LAMINA_REFRACTION_BRICK - 1) / LAMINA_REFRACTION_BRICK;
-    if (auto made = cube(mBricks, GL_R8, 1, bricks, false); !made)
+    if (auto made = cube(mBricks, GL_R8, 1, bricks); !made)
         return made;
-    return mSharedOptics ? Result<void>{} : cube(mOptics, GL_RGBA16F, 8, mVoxels, true);
+    return mSharedOptics ? Result<void>{} : cube(mOptics, GL_RGBA16F, 8, mVoxels);
 }
 
 Result<void> OpticalVolume::merge(const VolumeGrid& along, int axis) {
@@ -92,8 +89,8 @@ Result<void> OpticalVolume::merge(const VolumeGrid& along, int axis) {
     const gl::TextureUnitGuard textures(*mDevice, 0, kVolumeUnits);
     const gl::ImageUnitGuard images(*mDevice, 3);
     along.bind(0, 0);
-    gl.BindImageTexture(0, mNormals.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_RGBA16F);
-    gl.BindImageTexture(1, mOptics.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_RGBA16F);
+    gl.BindImageTexture(0, mPlanes.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_RGBA16F);
+    gl.BindImageTexture(1, mOptics.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
     gl.BindImageTexture(2, mBricks.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_R8);
     gl.UseProgram(*program);
     gl.ProgramUniform1i(*program, 0, axis);
@@ -119,7 +116,7 @@ Result<VolumeStats> OpticalVolume::build(std::span<const GeometrySource> sources
     const Box3 cube{bounds.center() - half, bounds.center() + half};
     mPlace = {glm::vec3(cube.min), static_cast<float>(mVoxels / (2.0 * half))};
     mDevice->gl.ClearTexImage(mBricks.id(), 0, GL_RED, GL_FLOAT, nullptr);
-    VolumeGrid& along = mSharedOptics ? mNormalsAlong : mOpticsAlong;
+    VolumeGrid& along = mSharedOptics ? mPlanesAlong : mOpticsAlong;
     VolumeStats stats;
     for (int axis = 0; axis < 3; ++axis) {
         const auto grid = GridTransform::box(cube, glm::uvec3(mVoxels), static_cast<Axis>(axis));
@@ -140,7 +137,7 @@ Result<VolumeStats> OpticalVolume::build(std::span<const GeometrySource> sources
 }
 
 void OpticalVolume::bind(GLuint unit) const {
-    const GLuint textures[] = {mNormals.id(), mOptics.id(), mBricks.id()};
+    const GLuint textures[] = {mPlanes.id(), mOptics.id(), mBricks.id()};
     for (GLuint i = 0; i < 3; ++i) {
         mDevice->gl.BindTextureUnit(unit + i, textures[i]);
         mDevice->gl.BindSampler(unit + i, 0);
@@ -148,7 +145,7 @@ void OpticalVolume::bind(GLuint unit) const {
 }
 
 std::uint64_t OpticalVolume::gpuBytes() const {
-    return mNormals.bytes() + mOptics.bytes() + mBricks.bytes() + mNormalsAlong.gpuBytes() +
+    return mPlanes.bytes() + mOptics.bytes() + mBricks.bytes() + mPlanesAlong.gpuBytes() +
            mOpticsAlong.gpuBytes();
 }
 

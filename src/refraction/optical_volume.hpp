@@ -12,8 +12,8 @@
 
 namespace lamina {
 
-/// The surfaces of an object in a cube of voxels, for rays that march through it ([CLN11] 4):
-/// filtered normals, and optics where materials differ. Made by three VolumeVoxelizer passes, which
+/// The surfaces of an object in a cube of voxels, for rays that march through it ([CLN11] 4): a
+/// plane a voxel, and optics where materials differ. Made by three VolumeVoxelizer passes, which
 /// look along x, y and z, so that no surface has gaps.
 class OpticalVolume {
 public:
@@ -26,7 +26,7 @@ public:
                                             std::span<const Material> materials,
                                             const Box3& bounds);
 
-    /// Binds normals, optics and bricks to three units from `unit`.
+    /// Binds planes, optics and bricks to three units from `unit`.
     void bind(GLuint unit) const;
 
     /// Low corner, voxels per world unit.
@@ -38,10 +38,10 @@ public:
 
 private:
     OpticalVolume(std::shared_ptr<gl::DeviceState> device, VolumeVoxelizer voxelizer,
-                  VolumeGrid normalsAlong, VolumeGrid opticsAlong, std::uint32_t voxels)
+                  VolumeGrid planesAlong, VolumeGrid opticsAlong, std::uint32_t voxels)
         : mDevice(std::move(device))
         , mVoxelizer(std::move(voxelizer))
-        , mNormalsAlong(std::move(normalsAlong))
+        , mPlanesAlong(std::move(planesAlong))
         , mOpticsAlong(std::move(opticsAlong))
         , mVoxels(voxels) {}
 
@@ -50,10 +50,10 @@ private:
 
     std::shared_ptr<gl::DeviceState> mDevice;
     VolumeVoxelizer mVoxelizer;
-    VolumeGrid mNormalsAlong; ///< Along one axis: normals alone.
-    VolumeGrid mOpticsAlong;  ///< Normals, optics and colours.
+    VolumeGrid mPlanesAlong; ///< Along one axis: normals and offsets.
+    VolumeGrid mOpticsAlong; ///< Normals, optics and colours.
     std::uint32_t mVoxels;
-    gl::Texture mNormals, mOptics, mBricks;
+    gl::Texture mPlanes, mOptics, mBricks;
     std::optional<glm::vec4> mSharedOptics;
     glm::vec4 mPlace{0.0f};
 };

@@ -179,7 +179,7 @@ void Refraction::Impl::bind(GLuint uniformBufferBinding, GLuint textureUnit) con
     if (thickness)
         bindTexture(LAMINA_REFRACTION_THICKNESS_UNIT, thickness->texture());
     else
-        volume->bind(textureUnit + LAMINA_REFRACTION_NORMAL_UNIT);
+        volume->bind(textureUnit + LAMINA_REFRACTION_PLANE_UNIT);
 }
 
 Refraction::Refraction(std::unique_ptr<Impl> impl)

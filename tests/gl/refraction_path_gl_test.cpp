@@ -132,10 +132,30 @@ protected:
     Errors measure(const char* name, const Bodies& bodies, std::span<const TriangleMesh> meshes,
                    RefractionModel model, int maxExactEvents,
                    std::vector<Material> materials = {}) {
-        const Seen seen = look(bodies, {1.2, 0.9, 3.0}, 20);
         if (materials.empty())
             materials = {glass(kIndex)};
-        const auto found = march(seen.rays, meshes, model, materials);
+        const Seen seen = look(bodies, {1.2, 0.9, 3.0}, 20);
+        return compare(name, seen, march(seen.rays, meshes, model, materials), maxExactEvents);
+    }
+
+    /// By rays that pass the ball of this radius about the origin within 5 % of it, inside or
+    /// beside, once they are in the glass.
+    static Seen grazing(const Seen& seen, double radius) {
+        Seen taken;
+        for (std::size_t i = 0; i < seen.rays.size(); ++i) {
+            const glm::dvec3 point(seen.rays[i].point), normal(seen.rays[i].normal);
+            const glm::dvec3 bent = glm::refract(glm::normalize(glm::dvec3(seen.rays[i].direction)),
+                                                 glm::normalize(normal), 1.0 / kIndex);
+            if (std::abs(glm::length(glm::cross(point, bent)) - radius) > 0.05 * radius)
+                continue;
+            taken.rays.push_back(seen.rays[i]);
+            taken.paths.push_back(seen.paths[i]);
+        }
+        return taken;
+    }
+
+    static Errors compare(const char* name, const Seen& seen, const std::vector<glm::vec4>& found,
+                          int maxExactEvents) {
         Errors errors;
         std::size_t considered = 0;
         for (std::size_t i = 0; i < seen.paths.size(); ++i) {
@@ -183,19 +203,19 @@ TEST_F(RefractionPathGlTest, TwoSurfacesOfASphereAndASlab) {
     const auto sphere =
         measure("two surfaces, sphere", one(example::makeGlassBall({0, 0, 0}, 1.0, kIndex)),
                 std::array{ball({0, 0, 0}, 1.0f)}, RefractionModel::TwoSurfaces, 1);
-    EXPECT_GE(sphere.shareBelow(2.0), 0.95);
+    EXPECT_GE(sphere.shareBelow(2.0), 0.99);
     // A slab, seen through its large faces.
     const auto slab = measure(
         "two surfaces, slab", one(example::makeGlassBox({-1, -1, -0.15}, {1, 1, 0.15}, kIndex)),
         std::array{ref::makeBox({-1, -1, -0.15f}, {1, 1, 0.15f})}, RefractionModel::TwoSurfaces, 1);
-    EXPECT_GE(slab.shareBelow(2.0), 0.95);
+    EXPECT_GE(slab.shareBelow(2.0), 0.97);
 }
 
 TEST_F(RefractionPathGlTest, ManySurfacesOfASphere) {
     const auto errors =
         measure("many surfaces, sphere", one(example::makeGlassBall({0, 0, 0}, 1.0, kIndex)),
                 std::array{ball({0, 0, 0}, 1.0f)}, RefractionModel::ManySurfaces, 4);
-    EXPECT_GE(errors.shareBelow(3.0), 0.90);
+    EXPECT_GE(errors.shareBelow(3.0), 0.99);
 }
 
 TEST_F(RefractionPathGlTest, ManySurfacesOfAHollowSphere) {
@@ -208,7 +228,7 @@ TEST_F(RefractionPathGlTest, ManySurfacesOfAHollowSphere) {
     const auto errors =
         measure("many surfaces, hollow sphere", bodies, std::array{ball({0, 0, 0}, 1.0f), hole},
                 RefractionModel::ManySurfaces, 4, {glass(kIndex), glass(kIndex)});
-    EXPECT_GE(errors.shareBelow(3.0), 0.90);
+    EXPECT_GE(errors.shareBelow(3.0), 0.98);
     EXPECT_GT(errors.reflected, 500u);
 }
 
@@ -217,24 +237,39 @@ TEST_F(RefractionPathGlTest, ManySurfacesOfACube) {
         measure("many surfaces, cube",
                 one(example::makeGlassBox({-0.7, -0.7, -0.7}, {0.7, 0.7, 0.7}, kIndex)),
                 std::array{ref::makeCube({0, 0, 0}, 1.4f)}, RefractionModel::ManySurfaces, 4);
-    EXPECT_GE(errors.shareBelow(3.0), 0.90);
+    // Beside edges the planes of two faces mix.
+    EXPECT_GE(errors.shareBelow(3.0), 0.96);
     EXPECT_GT(errors.reflected, 5000u);
 }
 
-/// Glass of another index, with a colour of its own, inside a ball of glass.
+/// Glass of another index inside a ball of glass: denser, and thinner, where rays that graze it are
+/// totally reflected. Such rays tell whether a ray passes beside or through: in one voxel's width
+/// the exact directions part by tens of degrees.
 TEST_F(RefractionPathGlTest, ManySurfacesOfNestedMaterials) {
-    constexpr double kInner = 1.9;
-    Bodies bodies;
-    bodies.push_back(example::makeGlassBall({0, 0, 0}, 1.0, kIndex));
-    bodies.push_back(example::makeGlassBall({0, 0, 0}, 0.55, kInner));
-    const auto errors = measure("many surfaces, nested spheres", bodies,
-                                std::array{ball({0, 0, 0}, 1.0f), ball({0, 0, 0}, 0.55f)},
-                                RefractionModel::ManySurfaces, 4, {glass(kIndex), glass(kInner)});
-    EXPECT_GE(errors.shareBelow(3.0), 0.90);
+    constexpr double kRadius = 0.55;
+    const std::array meshes{ball({0, 0, 0}, 1.0f), ball({0, 0, 0}, static_cast<float>(kRadius))};
+    for (const double inner : {1.9, 1.15}) {
+        Bodies bodies;
+        bodies.push_back(example::makeGlassBall({0, 0, 0}, 1.0, kIndex));
+        bodies.push_back(example::makeGlassBall({0, 0, 0}, kRadius, inner));
+        const std::array materials{glass(kIndex), glass(inner)};
+        const Seen seen = look(bodies, {1.2, 0.9, 3.0}, 20);
+        const auto all =
+            compare("many surfaces, nested spheres", seen,
+                    march(seen.rays, meshes, RefractionModel::ManySurfaces, materials), 4);
+        EXPECT_GE(all.shareBelow(3.0), 0.98);
+        const Seen edge = grazing(seen, kRadius);
+        const auto grazed =
+            compare("  rays that graze the inner one", edge,
+                    march(edge.rays, meshes, RefractionModel::ManySurfaces, materials), 4);
+        EXPECT_GT(grazed.degrees.size(), 500u);
+        EXPECT_GE(grazed.shareBelow(3.0), 0.97);
+    }
 }
 
 /// What is seen through a vase: by images of the farthest surfaces, by voxels and two surfaces, by
-/// voxels and all surfaces, each against the exact paths.
+/// voxels and all surfaces, each against the exact paths. Like with like: all follow the refracted
+/// light alone, or the totally reflected; no share is split off at inner surfaces.
 TEST_F(RefractionPathGlTest, VaseFallsInError) {
     const auto profile = example::vaseProfile();
     const Bodies bodies = one(example::makeRevolvedGlass(profile, kIndex));
@@ -269,7 +304,7 @@ TEST_F(RefractionPathGlTest, VaseFallsInError) {
     std::printf("vase, %zu rays: RMSE by images %.4f, two surfaces %.4f, many surfaces %.4f\n",
                 seen.rays.size(), rmse(images), rmse(twoSurfaces), rmse(manySurfaces));
     EXPECT_LT(rmse(twoSurfaces), rmse(images));
-    EXPECT_LT(rmse(manySurfaces), 0.8 * rmse(twoSurfaces));
+    EXPECT_LT(rmse(manySurfaces), 0.5 * rmse(twoSurfaces));
 }
 
 } // namespace

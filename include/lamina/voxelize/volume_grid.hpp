@@ -22,7 +22,9 @@ enum class VolumePayload : std::uint8_t {
     Absorption, ///< Sum of the hits' material absorption. R8, R16F or R32F.
     Normal,     ///< Mean surface normal, world space. RGBA8, RGBA16F or RGBA32F.
     Color,      ///< Mean surface colour. RGBA8, RGBA16F or RGBA32F.
-    Optics,     ///< Mean refractive index and transmission. RGBA8, RGBA16F or RGBA32F.
+    /// Mean refractive index and transmission; in float formats also where the surface crosses its
+    /// slice. RGBA8, RGBA16F or RGBA32F.
+    Optics,
 };
 inline constexpr std::size_t kVolumePayloadCount = 5;
 
@@ -70,7 +72,8 @@ struct VolumeData {
 ///
 /// One 3D texture a payload: columns x, columns y, slices. Texels of float formats hold sums over
 /// the hits of a voxel: absorption; (normal, hits), (colour, hits), (refractive index,
-/// transmission, 0, hits). Those of RGBA8 hold means: normal * 0.5 + 0.5, colour, ((index - 1) / 3,
+/// transmission, offset, hits), where offset is that of the surface at the column's centre from the
+/// voxel's, in slices. Those of RGBA8 hold means: normal * 0.5 + 0.5, colour, ((index - 1) / 3,
 /// transmission, 0), and min(hits, 255) / 255 in alpha. A uniform buffer holds the grid's
 /// constants. `#include <lamina/volume.glsl>` queries all of them. Reused across frames: memory is
 /// allocated again only when the size changes. Move-only; see Device for threads and lifetime.

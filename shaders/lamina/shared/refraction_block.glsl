@@ -33,7 +33,7 @@
 #define LAMINA_REFRACTION_BEHIND_UNIT 1
 #define LAMINA_REFRACTION_BEHIND_DEPTH_UNIT 2
 #define LAMINA_REFRACTION_THICKNESS_UNIT 3
-#define LAMINA_REFRACTION_NORMAL_UNIT 3
+#define LAMINA_REFRACTION_PLANE_UNIT 3
 #define LAMINA_REFRACTION_OPTICS_UNIT 4
 #define LAMINA_REFRACTION_BRICK_UNIT 5
 #define LAMINA_REFRACTION_UNITS 6
@@ -44,6 +44,7 @@
 #define LAMINA_REFRACTION_APPLY_OBJECT_UNIT 2
 #define LAMINA_REFRACTION_APPLY_TEXTURE_UNIT 3
 #define LAMINA_REFRACTION_APPLY_BLOCK_BINDING 0
+#define LAMINA_REFRACTION_APPLY_REPORT_BINDING 0
 
 // LaminaRefractionConstants.modes.x
 #define LAMINA_REFRACTION_POWER 1u
@@ -54,14 +55,16 @@
 #define LAMINA_REFRACTION_OBJECTS 32u
 
 // Voxels a side of the bricks that tell empty space.
-#define LAMINA_REFRACTION_BRICK 8
-// Steps of a marching ray, in voxels along its dominant axis.
-#define LAMINA_REFRACTION_STEP 0.5
-// Voxels from a surface's plane within which its voxels may be met again: along a diagonal they reach
-// sqrt(3) / 2, and filtered look-ups of them sqrt(3) more.
-#define LAMINA_REFRACTION_SURFACE_DEPTH 2.6
-// Of the weights of a filtered look-up: less is no surface.
+#define LAMINA_REFRACTION_BRICK 4
+// Steps of a marching ray, in voxels along its dominant axis: a surface at a voxel's face is seen for half a
+// voxel on one side.
+#define LAMINA_REFRACTION_STEP 0.45
+// Of the weights of a look-up: less is no surface.
 #define LAMINA_REFRACTION_LEAST_WEIGHT 0.01
+// Voxels before a surface's plane, or along the ray, after which a ray that has met it may meet it again: what
+// the planes of its voxels differ by, and how far look-ups see it.
+#define LAMINA_REFRACTION_CLEAR_DEPTH 0.1
+#define LAMINA_REFRACTION_CLEAR_LENGTH 3.0
 // Media that a ray can be in at a time, one within the other.
 #define LAMINA_REFRACTION_MAX_MEDIA 6
 // Steps of a ray: a bound, since a shader invocation may run 65535 loop iterations.
@@ -90,6 +93,11 @@ struct LaminaRefractionConstants {
     uvec4 modes;
     // Voxels a side of the volume, number of the object, greatest level of what lies behind; unused.
     uvec4 sizes;
+};
+
+// What the pass that shades a G-buffer counts.
+struct LaminaRefractionCounts {
+    uint openPixels;
 };
 
 struct LaminaThicknessConstants {
