@@ -1,11 +1,13 @@
 // Thickness maps against exact ray casting, on known shapes and real meshes.
 
+#include "gl/support/closed_holes.hpp"
 #include "gl/support/gl_state.hpp"
 #include "gl/support/gl_test.hpp"
 #include "gl/support/test_meshes.hpp"
 
 #include <lamina/refraction/thickness_map.hpp>
 
+#include <reference/mesh_measures.hpp>
 #include <reference/shapes.hpp>
 #include <reference/volume_integral.hpp>
 
@@ -60,10 +62,11 @@ TestView lookAtBox(const Box3& bounds, const glm::uvec2& size, bool isPerspectiv
 
 struct Agreement {
     std::size_t covered = 0, equal = 0, open = 0;
-    double worst = 0.0;      ///< Slices a crossing by which a count differs from the ideal.
-    double meanError = 0.0;  ///< Against the exact inside length, world units.
-    double meanPlain = 0.0;  ///< Of the difference of nearest and farthest depth.
-    double worstExact = 0.0; ///< Slices a crossing from the exact length; unambiguous columns.
+    double worst = 0.0;     ///< Slices a crossing by which a count differs from the ideal.
+    double meanError = 0.0; ///< Against the exact inside length, world units.
+    double meanPlain = 0.0; ///< Of the difference of nearest and farthest depth.
+    /// Unambiguous columns more than a slice a crossing from the exact length.
+    std::size_t inexact = 0;
 };
 
 class ThicknessGlTest : public test::GlTest {
@@ -109,10 +112,8 @@ protected:
                 result.meanPlain += std::abs((far - near) * perDepth - exact);
                 const bool isAmbiguous =
                     std::ranges::find(voxels, ref::Facing::Both) != voxels.end();
-                if (slice > 0.0 && !isAmbiguous)
-                    result.worstExact =
-                        std::max(result.worstExact, std::abs(found - exact) / slice /
-                                                        static_cast<double>(column.size()));
+                const double allowed = slice * static_cast<double>(column.size()) + rounding;
+                result.inexact += !isAmbiguous && std::abs(found - exact) > allowed ? 1 : 0;
             }
         result.meanError /= static_cast<double>(result.covered);
         result.meanPlain /= static_cast<double>(result.covered);
@@ -121,7 +122,7 @@ protected:
 
     void expectThickness(const std::string& name, const TriangleMesh& mesh, unsigned pixels,
                          std::initializer_list<unsigned> sliceCounts, bool isPerspective = true,
-                         bool isClosed = true) {
+                         double inexactShare = 0.0) {
         const Box3 bounds = mesh.bounds();
         const TestView at = lookAtBox(bounds, {pixels, pixels}, isPerspective);
         const ref::ColumnCrossings crossings(mesh, at.grid);
@@ -144,10 +145,8 @@ protected:
             EXPECT_GE(agreement.equal, 0.99 * agreement.covered);
             // A crossing on a boundary between slices may fall to either side.
             EXPECT_LE(agreement.worst, 1.0);
-            if (isClosed) {
-                EXPECT_LE(agreement.worstExact, 1.0);
-                EXPECT_EQ(agreement.open, 0u);
-            }
+            EXPECT_LE(agreement.inexact, inexactShare * agreement.covered);
+            EXPECT_LE(agreement.open, inexactShare * agreement.covered);
             const auto report = map.downloadReport().value();
             EXPECT_NEAR(static_cast<double>(report.openColumns),
                         static_cast<double>(agreement.open), 1e-3 * agreement.covered);
@@ -179,9 +178,27 @@ TEST_F(ThicknessGlTest, KnownShapes) {
     }
 }
 
+constexpr auto kSliceCounts = {32u, 128u, 512u, 1024u};
+
 TEST_F(ThicknessGlTest, TorusKnotFrom32To1024Slices) {
-    expectThickness("torus knot", ref::makeTorusKnot({0, 0, 0}, 0.6f, 0.16f, 2, 3, 512, 32), 256,
-                    {32, 100, 128, 512, 1000, 1024});
+    const TriangleMesh mesh = ref::makeTorusKnot({0, 0, 0}, 0.6f, 0.16f, 2, 3, 512, 32);
+    expectThickness("torus knot", mesh, 512, kSliceCounts);
+    expectThickness("torus knot", mesh, 128, {100, 1000});
+}
+
+TEST_F(ThicknessGlTest, NestedShellsFrom32To1024Slices) {
+    const float radii[] = {1.0f, 0.8f, 0.5f, 0.3f};
+    expectThickness("nested shells", ref::makeNestedShells({0, 0, 0}, radii, 5), 512, kSliceCounts);
+}
+
+TEST_F(ThicknessGlTest, RealMeshesFrom32To1024Slices) {
+    for (const auto& [name, mesh] : test::readRealMeshes({"armadillo.ply", "bunny.ply"})) {
+        // The scanned bunny has holes. Scans and fans cross themselves in places, where facings do
+        // not alternate along a ray.
+        const TriangleMesh closed = test::withHolesClosed(mesh);
+        ASSERT_TRUE(ref::isWatertight(closed)) << name;
+        expectThickness(name, closed, 512, kSliceCounts, true, 1e-3);
+    }
 }
 
 /// 2 (r^2 - b^2)^(1/2) for rays at distance b from a sphere's centre: known without any reference.
@@ -210,12 +227,6 @@ TEST_F(ThicknessGlTest, SphereByFormula) {
                 EXPECT_NEAR(found[y * 96 + x], exact, 0.007) << x << ' ' << y;
             }
         }
-}
-
-TEST_F(ThicknessGlTest, RealMeshes) {
-    for (const auto& [name, mesh] : test::readRealMeshes({"armadillo.ply", "bunny.ply"}))
-        // The scanned bunny is open; its columns through the holes end at the last crossing.
-        expectThickness(name, mesh, 512, {32, 128}, true, false);
 }
 
 TEST_F(ThicknessGlTest, OpenMeshesAreReportedAndBounded) {

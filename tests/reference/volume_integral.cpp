@@ -6,20 +6,23 @@
 namespace lamina::reference {
 namespace {
 
-/// The nearest voxel that is not empty in front of (step -1) or behind (step 1) voxel i.
-std::optional<Facing> neighbour(std::span<const Facing> column, std::size_t i, int step) {
-    for (auto at = static_cast<std::ptrdiff_t>(i) + step;
-         at >= 0 && at < static_cast<std::ptrdiff_t>(column.size()); at += step)
-        if (column[static_cast<std::size_t>(at)] != Facing::Empty)
-            return column[static_cast<std::size_t>(at)];
-    return {};
+/// For each voxel the nearest one that is not empty, in front of it (step 1: the column is walked
+/// away from the eye) or behind it (step -1).
+std::vector<std::optional<Facing>> neighbours(std::span<const Facing> column, int step) {
+    std::vector<std::optional<Facing>> found(column.size());
+    std::optional<Facing> last;
+    for (std::size_t n = 0; n < column.size(); ++n) {
+        const std::size_t i = step > 0 ? n : column.size() - 1 - n;
+        found[i] = last;
+        if (column[i] != Facing::Empty)
+            last = column[i];
+    }
+    return found;
 }
 
-bool isInner(std::span<const Facing> column, std::size_t i) {
-    const auto before = neighbour(column, i, -1);
-    const auto behind = neighbour(column, i, 1);
-    if (column[i] != Facing::Empty)
-        return column[i] != Facing::Back || !behind;
+bool isInner(Facing voxel, std::optional<Facing> before, std::optional<Facing> behind) {
+    if (voxel != Facing::Empty)
+        return voxel != Facing::Back || !behind;
     if (!before || !behind)
         return false;
     if (*before != Facing::Both)
@@ -30,17 +33,20 @@ bool isInner(std::span<const Facing> column, std::size_t i) {
 } // namespace
 
 unsigned countInner(std::span<const Facing> column) {
+    const auto before = neighbours(column, 1);
+    const auto behind = neighbours(column, -1);
     unsigned count = 0;
     for (std::size_t i = 0; i < column.size(); ++i)
-        count += isInner(column, i) ? 1 : 0;
+        count += isInner(column[i], before[i], behind[i]) ? 1 : 0;
     return count;
 }
 
 bool looksClosed(std::span<const Facing> column) {
-    const auto first = std::ranges::find_if(column, [](Facing f) { return f != Facing::Empty; });
+    const auto isFull = [](Facing facing) { return facing != Facing::Empty; };
+    const auto first = std::ranges::find_if(column, isFull);
     if (first == column.end())
         return true;
-    const auto last = neighbour(column, column.size(), -1);
+    const auto last = std::find_if(column.rbegin(), column.rend(), isFull);
     return *first != Facing::Back && *last != Facing::Front;
 }
 
