@@ -5,6 +5,7 @@
 #include "gl/screen_pass.hpp"
 #include "gl/view_constants.hpp"
 #include "refraction/optical_volume.hpp"
+#include "refraction/receiver_textures.hpp"
 #include "refraction/refraction_constants.hpp"
 #include "refraction/refraction_settings.hpp"
 #include "refraction/seamless_cube_maps.hpp"
@@ -35,12 +36,13 @@ struct Refraction::Impl {
     gl::FetchSampler nearest;
     GLuint program = 0, copyProgram = 0;
     gl::Buffer constants;
+    gl::Buffer report; ///< shared::LaminaRefractionCounts of the last apply().
     gl::Texture target, behind;
     glm::uvec2 targetSize{0}, behindSize{0};
     std::uint32_t environmentTexture = 0, environmentLevels = 0, environmentSize = 0;
     shared::LaminaRefractionConstants block{};
     GLuint behindDepth = 0;
-    bool isPrepared = false;
+    bool isPrepared = false, isApplied = false;
 
     Impl(const Device& host, const RefractionDesc& wanted)
         : device(host.state())
@@ -95,6 +97,11 @@ Result<void> Refraction::Impl::createObjects(const Device& host) {
     if (!buffer)
         return buffer.error();
     constants = std::move(*buffer);
+    auto counts = gl::createBuffer(device, sizeof(shared::LaminaRefractionCounts), nullptr, 0,
+                                   kOperation, "lamina refraction report");
+    if (!counts)
+        return counts.error();
+    report = std::move(*counts);
     return {};
 }
 
@@ -122,23 +129,7 @@ Result<void> Refraction::Impl::check(const RefractionReceiver& receiver, GLuint 
     if (thickness && thickness->size() != receiver.view.size)
         return invalid("expected the view's size that the object was prepared for, found another; "
                        "call prepare() with this view");
-    struct Part {
-        GLuint texture;
-        const char* what;
-        bool isNeeded;
-    };
-    const Part parts[] = {{receiver.depthTexture, "depth", true},
-                          {receiver.normalTexture, "normal", true},
-                          {receiver.objectTexture, "object", false},
-                          {receiver.colorTexture, "colour", false},
-                          {receiver.colorDepthTexture, "colour depth", false},
-                          {out, "target", true}};
-    for (const Part& part : parts)
-        if (part.isNeeded || part.texture != 0)
-            if (auto fits = checkTexture(*device, part.texture, receiver.view.size, part.what);
-                !fits)
-                return fits;
-    return {};
+    return checkReceiverTextures(device, receiver, out);
 }
 
 Result<void> Refraction::Impl::copyBehind(const RefractionReceiver& receiver) {
@@ -222,6 +213,7 @@ Result<RefractionStats> Refraction::prepare(const RefractionObject& object, cons
         return constants.error();
     const gl::DebugGroup group(*impl.device, "lamina: prepare refraction");
     impl.isPrepared = false;
+    impl.isApplied = false;
     RefractionStats stats;
     impl.block.view = *constants;
     impl.block.modes.x = 0;
@@ -290,7 +282,12 @@ Result<void> Refraction::apply(const RefractionReceiver& receiver, std::uint32_t
     const gl::TextureUnitGuard textures(device, 0,
                                         LAMINA_REFRACTION_APPLY_TEXTURE_UNIT + kTextureUnits);
     const gl::IndexedBufferBindings uniforms(gl, GL_UNIFORM_BUFFER, 1);
+    const gl::DrawBufferGuard buffers(device, 1);
     const SeamlessCubeMaps seamless(gl);
+    const GLuint counts = impl.report.id();
+    gl.ClearNamedBufferData(counts, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    gl.BindBuffersBase(GL_SHADER_STORAGE_BUFFER, LAMINA_REFRACTION_APPLY_REPORT_BINDING, 1,
+                       &counts);
     const GLuint inputs[] = {receiver.depthTexture, receiver.normalTexture, receiver.objectTexture};
     for (GLuint unit = 0; unit < 3; ++unit) {
         gl.BindTextureUnit(unit, inputs[unit]);
@@ -299,7 +296,24 @@ Result<void> Refraction::apply(const RefractionReceiver& receiver, std::uint32_t
     impl.bind(LAMINA_REFRACTION_APPLY_BLOCK_BINDING, LAMINA_REFRACTION_APPLY_TEXTURE_UNIT);
     impl.screenPass.draw(impl.program, {&target, 1}, receiver.view.size);
     uniforms.restore(gl);
+    impl.isApplied = true;
     return {};
+}
+
+Result<RefractionReport> Refraction::downloadReport() const {
+    if (mImpl->thickness) {
+        const auto report = mImpl->thickness->downloadReport();
+        if (!report)
+            return report.error();
+        return RefractionReport{report->openColumns};
+    }
+    if (!mImpl->isApplied)
+        return invalid("expected a shaded object to report on, found none; call apply() first");
+    const GladGLContext& gl = mImpl->device->gl;
+    shared::LaminaRefractionCounts counts{};
+    gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl.GetNamedBufferSubData(mImpl->report.id(), 0, sizeof counts, &counts);
+    return RefractionReport{counts.openPixels};
 }
 
 const ThicknessMap* Refraction::thicknessMap() const {
@@ -329,7 +343,8 @@ const RefractionDesc& Refraction::desc() const {
 
 std::uint64_t Refraction::gpuBytes() const {
     return (mImpl->thickness ? mImpl->thickness->gpuBytes() : mImpl->volume->gpuBytes()) +
-           mImpl->constants.bytes() + mImpl->target.bytes() + mImpl->behind.bytes();
+           mImpl->constants.bytes() + mImpl->report.bytes() + mImpl->target.bytes() +
+           mImpl->behind.bytes();
 }
 
 } // namespace lamina

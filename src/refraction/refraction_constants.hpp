@@ -20,7 +20,8 @@ using uint = std::uint32_t;
 static_assert(offsetof(LaminaRefractionConstants, surface) == 11 * 16 &&
                   sizeof(LaminaRefractionConstants) == 18 * 16,
               "std140");
-static_assert(sizeof(LaminaThicknessConstants) == 16 && sizeof(LaminaThicknessCounts) == 8,
+static_assert(sizeof(LaminaThicknessConstants) == 16 && sizeof(LaminaThicknessCounts) == 8 &&
+                  sizeof(LaminaRefractionCounts) == 4,
               "std140, std430");
 
 } // namespace lamina::shared

@@ -17,10 +17,6 @@ struct Range {
     float low, high; ///< Inclusive; infinite: any finite value.
 };
 
-std::string size(const glm::uvec2& pixels) {
-    return std::to_string(pixels.x) + " x " + std::to_string(pixels.y);
-}
-
 } // namespace
 
 Result<void> checkSettings(const RefractionSettings& settings) {
@@ -68,26 +64,6 @@ void writeSettings(const RefractionSettings& settings, RefractionModel model,
                   std::cos(settings.sameSurfaceAngle)};
     block.modes.x = isPower ? LAMINA_REFRACTION_POWER : 0u;
     block.modes.w = model == RefractionModel::TwoSurfaces ? 1u : settings.maxEvents;
-}
-
-Result<void> checkTexture(const gl::DeviceState& device, GLuint texture, const glm::uvec2& pixels,
-                          std::string_view what) {
-    const GladGLContext& gl = device.gl;
-    const std::string expected = "refraction: expected a " + std::string(what) +
-                                 " texture, 2D, of " + size(pixels) + " pixels, found ";
-    GLint target = 0;
-    if (gl.IsTexture(texture))
-        gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-    if (target != GL_TEXTURE_2D)
-        return Error{ErrorCode::InvalidArgument,
-                     expected + "name " + std::to_string(texture) + ", which is none"};
-    GLint width = 0, height = 0;
-    gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &width);
-    gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &height);
-    const glm::uvec2 found(width, height);
-    if (found != pixels)
-        return Error{ErrorCode::InvalidArgument, expected + size(found)};
-    return {};
 }
 
 } // namespace lamina

@@ -29,7 +29,8 @@ enum class RefractionModel : std::uint8_t {
     /// (Wyman 2005, [CLN11] 4.1). A volume of voxels, from no particular view.
     TwoSurfaces,
     /// Bent at every surface it meets, with total internal reflection and materials within each
-    /// other ([CLN11] 4.1.1). The same volume.
+    /// other ([CLN11] 4.1.1). The same volume. Only the first surface mirrors: no share of the
+    /// light is split off at the others.
     ManySurfaces,
 };
 
@@ -37,7 +38,7 @@ struct RefractionDesc {
     RefractionModel model = RefractionModel::VolumeIntegral;
     ThicknessDesc thickness{}; ///< VolumeIntegral.
     /// TwoSurfaces, ManySurfaces: voxels a side of the cube around the object, 8 to 1024. Memory:
-    /// about 17 bytes a voxel, 49 where materials differ.
+    /// about 25 bytes a voxel, 41 where materials differ.
     std::uint32_t voxels = 128;
     /// How far each slice reaches into its neighbours, in slices, from 0 to 1 ([CLN11] 4.1.1). The
     /// volume is made along three axes and has no gaps without; it thickens thin surfaces.
@@ -97,6 +98,15 @@ struct RefractionStats {
     std::uint64_t gpuBytes = 0;      ///< GL memory held.
 };
 
+/// How far the picture can be trusted.
+struct RefractionReport {
+    /// Pixels that tell of an open surface: VolumeIntegral: ThicknessReport::openColumns of the
+    /// last prepare(). The others: of the last apply(), rays that met a back face from outside or
+    /// never left the object. Closed surfaces give none or a few in a hundred, where voxels are too
+    /// coarse for edges and walls; where an open one is open, each of its pixels.
+    std::uint64_t openPixels = 0;
+};
+
 /// What an engine has drawn of the objects' front surfaces. 2D textures of view.size.
 struct RefractionReceiver {
     View view;
@@ -105,8 +115,8 @@ struct RefractionReceiver {
     /// World-space normals of any length, outward; as x, y, z, or x, y, z * 0.5 + 0.5.
     std::uint32_t normalTexture = 0;
     bool unsignedNormals = false;
-    /// Which object a pixel shows, an integer format; 0: all pixels but the background are this
-    /// one's.
+    /// Which object a pixel shows, an unsigned integer format; 0: all pixels but the background are
+    /// this one's.
     std::uint32_t objectTexture = 0;
     std::uint32_t objectId = 0; ///< This object's number there.
     /// Linear colours of what lies behind the objects; 0: only the environment does. Copied: it may
@@ -162,6 +172,11 @@ public:
     /// format; pixels that do not show the object keep what they hold.
     [[nodiscard]] Result<void> apply(const RefractionReceiver& receiver, std::uint32_t target);
 
+    /// Of the last prepare() or apply(): an open surface is no error, its pixels are bounded and
+    /// finite. Rays of lamina/refraction.glsl tell it themselves. Waits for the GPU.
+    /// Errors: InvalidArgument before prepare(), or apply() after it but for VolumeIntegral.
+    [[nodiscard]] Result<RefractionReport> downloadReport() const;
+
     /// The map of the last prepare(); null but for VolumeIntegral.
     [[nodiscard]] const ThicknessMap* thicknessMap() const;
 
@@ -174,7 +189,9 @@ public:
     /// Binds what lamina/refraction.glsl reads, for the view and colour texture of the last
     /// apply(), or of prepare() if that came later (without colour texture). Does nothing before
     /// prepare() or setEnvironment(). GL: these bindings (and the units' samplers) are what it
-    /// changes; the caller restores them if need be.
+    /// changes; the caller restores them if need be. GL_TEXTURE_CUBE_MAP_SEAMLESS should be on
+    /// while the engine's shader runs, or edges show in blurred surroundings; apply() sees to it
+    /// itself.
     void bind(std::uint32_t uniformBufferBinding = 0, std::uint32_t textureUnit = 0);
 
     [[nodiscard]] const RefractionDesc& desc() const;

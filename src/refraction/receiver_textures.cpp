@@ -1,0 +1,101 @@
+#include "refraction/receiver_textures.hpp"
+
+#include "gl/host_texture.hpp"
+#include "gl/objects.hpp"
+
+#include <string>
+
+namespace lamina {
+namespace {
+
+enum class Content : std::uint8_t { Colors, Numbers, Target };
+
+std::string size(const glm::uvec2& pixels) {
+    return std::to_string(pixels.x) + " x " + std::to_string(pixels.y);
+}
+
+const char* nameOf(Content content) {
+    return content == Content::Numbers ? "unsigned integers"
+           : content == Content::Colors
+               ? "floats or normalized numbers"
+               : "floats or normalized numbers that framebuffers can be drawn to with";
+}
+
+bool isDrawable(const std::shared_ptr<gl::DeviceState>& device, GLuint texture) {
+    const auto probe = gl::Framebuffer::create(device, "lamina refraction target");
+    device->gl.NamedFramebufferTexture(probe.id(), GL_COLOR_ATTACHMENT0, texture, 0);
+    return device->gl.CheckNamedFramebufferStatus(probe.id(), GL_DRAW_FRAMEBUFFER) ==
+           GL_FRAMEBUFFER_COMPLETE;
+}
+
+bool holds(const std::shared_ptr<gl::DeviceState>& device, GLuint texture, Content content) {
+    GLint type = 0;
+    device->gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_RED_TYPE, &type);
+    if (content == Content::Numbers)
+        return type == GL_UNSIGNED_INT;
+    if (type != GL_FLOAT && type != GL_UNSIGNED_NORMALIZED && type != GL_SIGNED_NORMALIZED)
+        return false;
+    return content == Content::Colors || isDrawable(device, texture);
+}
+
+Result<void> checkTexture(const std::shared_ptr<gl::DeviceState>& device, GLuint texture,
+                          const glm::uvec2& pixels, std::string_view what, Content content) {
+    const GladGLContext& gl = device->gl;
+    const auto invalid = [&](const std::string& found) {
+        return Error{ErrorCode::InvalidArgument,
+                     "refraction: expected a " + std::string(what) + " texture, 2D, of " +
+                         size(pixels) + " pixels and " + nameOf(content) + ", found " + found};
+    };
+    GLint target = 0;
+    if (gl.IsTexture(texture))
+        gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
+    if (target != GL_TEXTURE_2D)
+        return invalid("name " + std::to_string(texture) + ", which is none");
+    GLint width = 0, height = 0;
+    gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &width);
+    gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &height);
+    const glm::uvec2 found(width, height);
+    if (found != pixels)
+        return invalid(size(found));
+    if (!holds(device, texture, content))
+        return invalid("another format");
+    return {};
+}
+
+Result<void> checkDepths(const gl::DeviceState& device, GLuint texture, const glm::uvec2& pixels,
+                         const char* operation) {
+    const auto step = gl::depthStep(device, texture, pixels, operation);
+    return step ? Result<void>{} : step.error();
+}
+
+} // namespace
+
+Result<void> checkReceiverTextures(const std::shared_ptr<gl::DeviceState>& device,
+                                   const RefractionReceiver& receiver, GLuint target) {
+    const glm::uvec2& pixels = receiver.view.size;
+    if (auto fits = checkDepths(*device, receiver.depthTexture, pixels, "refraction"); !fits)
+        return fits;
+    if (receiver.colorDepthTexture != 0)
+        if (auto fits = checkDepths(*device, receiver.colorDepthTexture, pixels,
+                                    "refraction, of what lies behind");
+            !fits)
+            return fits;
+    struct Part {
+        GLuint texture;
+        const char* what;
+        Content content;
+        bool isNeeded;
+    };
+    const Part parts[] = {{receiver.normalTexture, "normal", Content::Colors, true},
+                          {receiver.objectTexture, "object", Content::Numbers, false},
+                          {receiver.colorTexture, "colour", Content::Colors, false},
+                          {target, "target", Content::Target, true}};
+    for (const Part& part : parts)
+        if (part.isNeeded || part.texture != 0)
+            if (auto fits = checkTexture(device, part.texture, pixels, part.what, part.content);
+                !fits)
+                return fits;
+    return {};
+}
+
+} // namespace lamina

@@ -1,0 +1,110 @@
+// What refraction refuses, and that nothing is lost by it.
+
+#include "gl/support/ball_frame.hpp"
+
+#include <reference/shapes.hpp>
+
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace lamina {
+namespace {
+
+namespace ref = reference;
+using test::Ball;
+using test::kRefractionModels;
+using test::kSize;
+using RefractionContractGlTest = test::BallFrameTest;
+
+TEST_F(RefractionContractGlTest, RefusesTexturesOfTheWrongKind) {
+    const Ball ball{{0, 0, 0}, 1.0};
+    auto buffers = MeshBuffers::upload(device(), ref::makeIcosphere({0, 0, 0}, 1.0f, 3)).value();
+    const GeometrySource source = buffers.view();
+    const GBuffer drawn = draw({&ball, 1});
+    const Environment environment = whiteEnvironment();
+    Refraction refraction = create(RefractionModel::ManySurfaces, environment);
+    ASSERT_TRUE(
+        refraction.prepare({{&source, 1}, {&mClear, 1}, {glm::dvec3(-1), glm::dvec3(1)}}, mView));
+    const gl::Texture integers = emptyTexture(GL_RGBA32UI);
+    const gl::Texture shared = emptyTexture(GL_RGB9_E5);
+    const gl::Texture floats = emptyTexture(GL_RGBA16F);
+    const gl::Texture small = emptyTexture(GL_RGBA16F, {8, 8});
+    const auto refused = [&](auto&& change, const std::string& text) {
+        RefractionReceiver receiver = receiverOf(drawn);
+        GLuint target = floats.id();
+        change(receiver, target);
+        const auto applied = refraction.apply(receiver, target);
+        ASSERT_FALSE(applied) << text;
+        EXPECT_EQ(applied.error().code, ErrorCode::InvalidArgument);
+        EXPECT_NE(applied.error().text.find(text), std::string::npos) << applied.error().text;
+    };
+    using Receiver = RefractionReceiver;
+    refused([&](Receiver& r, GLuint&) { r.depthTexture = integers.id(); }, "depths");
+    refused([&](Receiver& r, GLuint&) { r.depthTexture = small.id(); }, "8 x 8");
+    refused([&](Receiver& r, GLuint&) { r.normalTexture = integers.id(); }, "normal texture");
+    refused([&](Receiver& r, GLuint&) { r.objectTexture = floats.id(); }, "unsigned integers");
+    refused([&](Receiver& r, GLuint&) { r.colorTexture = integers.id(); }, "colour texture");
+    refused([&](Receiver& r, GLuint&) { r.colorTexture = small.id(); }, "8 x 8");
+    refused(
+        [&](Receiver& r, GLuint&) {
+            r.colorTexture = floats.id();
+            r.colorDepthTexture = integers.id();
+        },
+        "behind");
+    refused([&](Receiver&, GLuint& target) { target = integers.id(); }, "target");
+    refused([&](Receiver&, GLuint& target) { target = shared.id(); }, "drawn to");
+    refused([&](Receiver&, GLuint& target) { target = environment.texture(); }, "which is none");
+    refused([&](Receiver& r, GLuint&) { r.view.size = {0, 4}; }, "at least 1 x 1");
+    EXPECT_TRUE(refraction.apply(receiverOf(drawn), floats.id())) << "nothing is lost";
+}
+
+/// What cannot be prepared says so; the next object can.
+TEST_F(RefractionContractGlTest, RefusesObjectsAndGoesOn) {
+    const Ball ball{{0, 0, 0}, 1.0};
+    auto buffers = MeshBuffers::upload(device(), ref::makeIcosphere({0, 0, 0}, 1.0f, 3)).value();
+    const GeometrySource source = buffers.view();
+    const GBuffer drawn = draw({&ball, 1});
+    const Environment environment = whiteEnvironment();
+    const Box3 bounds{glm::dvec3(-1), glm::dvec3(1)};
+    for (const RefractionModel model : kRefractionModels) {
+        Refraction refraction = create(model, environment);
+        const auto codeOf = [&](const RefractionObject& object) {
+            const auto prepared = refraction.prepare(object, mView);
+            return prepared ? std::optional<ErrorCode>{} : prepared.error().code;
+        };
+        const double nowhere = std::numeric_limits<double>::quiet_NaN();
+        EXPECT_EQ(codeOf({{&source, 1}, {}, Box3{}}), ErrorCode::InvalidArgument);
+        EXPECT_EQ(codeOf({{&source, 1}, {}, {glm::dvec3(nowhere), glm::dvec3(1)}}),
+                  ErrorCode::InvalidArgument);
+        MeshView beyond = buffers.view();
+        beyond.indexCount += 3;
+        const GeometrySource unfit = beyond;
+        EXPECT_EQ(codeOf({{&unfit, 1}, {}, bounds}), ErrorCode::InvalidArgument);
+        if (model != RefractionModel::VolumeIntegral) {
+            for (const float index : {0.9f, std::numeric_limits<float>::quiet_NaN(),
+                                      std::numeric_limits<float>::infinity()}) {
+                Material odd = mClear;
+                odd.refractiveIndex = index;
+                EXPECT_EQ(codeOf({{&source, 1}, {&odd, 1}, bounds}), ErrorCode::InvalidArgument);
+            }
+            MeshView other = buffers.view();
+            other.materialId = 1;
+            const GeometrySource stranger = other;
+            EXPECT_EQ(codeOf({{&stranger, 1}, {&mClear, 1}, bounds}), ErrorCode::InvalidArgument);
+        }
+        EXPECT_EQ(refraction.apply(receiverOf(drawn)).error().code, ErrorCode::InvalidArgument)
+            << "nothing is prepared";
+        device().setMemoryBudget(1);
+        Refraction fresh = std::move(refraction);
+        const auto poor = fresh.prepare({{&source, 1}, {&mClear, 1}, bounds}, mView);
+        ASSERT_FALSE(poor);
+        EXPECT_EQ(poor.error().code, ErrorCode::OutOfMemory) << poor.error().text;
+        device().setMemoryBudget(0);
+        EXPECT_TRUE(fresh.prepare({{&source, 1}, {&mClear, 1}, bounds}, mView));
+        EXPECT_TRUE(fresh.apply(receiverOf(drawn)));
+    }
+}
+
+} // namespace
+} // namespace lamina
