@@ -128,5 +128,71 @@ TEST_F(RefractionEnvironmentGlTest, FiltersAcrossEdgesWhateverTheHostHasSet) {
     EXPECT_EQ(pictures[0], pictures[1]);
 }
 
+/// What the engine has drawn is seen bent through a ball, but nothing that stands before the ball,
+/// and blurred through frosted glass.
+TEST_F(RefractionEnvironmentGlTest, WhatTheEngineHasDrawnBehind) {
+    const Ball ball{{0, 0, 0}, 1.0};
+    auto buffers = MeshBuffers::upload(device(), ref::makeIcosphere({0, 0, 0}, 1.0f, 4)).value();
+    const GeometrySource source = buffers.view();
+    const GBuffer drawn = draw({&ball, 1});
+    Material glass;
+    glass.refractiveIndex = 1.5f;
+    // Red at the left, blue at the right.
+    constexpr unsigned kEdge = 26;
+    std::vector<glm::vec4> colors;
+    std::vector<float> before, behind;
+    for (std::size_t i = 0; i < std::size_t{kSize.x} * kSize.y; ++i) {
+        const bool isLeft = i % kSize.x < kEdge;
+        colors.emplace_back(isLeft, 0.0f, !isLeft, 1.0f);
+        before.push_back(isLeft ? 0.2f : 1.0f);
+        behind.push_back(isLeft ? 0.999f : 1.0f);
+    }
+    const gl::Texture color = texture(GL_RGBA16F, GL_RGBA, GL_FLOAT, colors);
+    const gl::Texture depths[] = {texture(GL_R32F, GL_RED, GL_FLOAT, before),
+                                  texture(GL_R32F, GL_RED, GL_FLOAT, behind)};
+    const Environment black =
+        environmentOf([](const glm::vec3&) { return glm::vec3(0.0f); }, {.size = 4});
+    // Pixels right of the edge that show mostly red.
+    const auto countRed = [&](Refraction& refraction, GLuint colorDepth) {
+        RefractionReceiver receiver = receiverOf(drawn);
+        receiver.colorTexture = color.id();
+        receiver.colorDepthTexture = colorDepth;
+        const auto pixels = read(refraction.apply(receiver).value());
+        std::size_t red = 0;
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            red += i % kSize.x >= kEdge && pixels[i].r > pixels[i].b ? 1 : 0;
+        return red;
+    };
+    for (const RefractionModel model : kRefractionModels) {
+        Refraction refraction = create(model, black);
+        RefractionSettings settings;
+        settings.reflection = 0.0f;
+        settings.behindDistance = 4.0f;
+        ASSERT_TRUE(refraction.setSettings(settings));
+        ASSERT_TRUE(refraction.prepare({{&source, 1}, {&glass, 1}, {glm::dvec3(-1), glm::dvec3(1)}},
+                                       mView));
+        EXPECT_GT(countRed(refraction, 0), 5u) << static_cast<int>(model);
+        EXPECT_GT(countRed(refraction, depths[1].id()), 5u) << static_cast<int>(model);
+        EXPECT_EQ(countRed(refraction, depths[0].id()), 0u) << static_cast<int>(model);
+
+        Refraction frosted = create(model, black);
+        settings.refractiveIndex = 1.0f;
+        ASSERT_TRUE(
+            frosted.prepare({{&source, 1}, {&mClear, 1}, {glm::dvec3(-1), glm::dvec3(1)}}, mView));
+        std::size_t mixed[2] = {};
+        for (const int isBlurred : {0, 1}) {
+            settings.surfaceBlur = isBlurred ? 0.2f : 0.0f;
+            ASSERT_TRUE(frosted.setSettings(settings));
+            RefractionReceiver receiver = receiverOf(drawn);
+            receiver.colorTexture = color.id();
+            for (const glm::vec4& pixel : read(frosted.apply(receiver).value()))
+                mixed[isBlurred] += pixel.r > 0.1f && pixel.b > 0.1f ? 1 : 0;
+        }
+        // An edge of 30 pixels, one wide or some.
+        EXPECT_LT(mixed[0], 70u) << static_cast<int>(model);
+        EXPECT_GT(mixed[1], 2 * mixed[0] + 60) << static_cast<int>(model);
+    }
+}
+
 } // namespace
 } // namespace lamina
