@@ -26,10 +26,10 @@ TEST_F(RefractionContractGlTest, RefusesTexturesOfTheWrongKind) {
     Refraction refraction = create(RefractionModel::ManySurfaces, environment);
     ASSERT_TRUE(
         refraction.prepare({{&source, 1}, {&mClear, 1}, {glm::dvec3(-1), glm::dvec3(1)}}, mView));
-    const gl::Texture integers = emptyTexture(GL_RGBA32UI);
-    const gl::Texture shared = emptyTexture(GL_RGB9_E5);
-    const gl::Texture floats = emptyTexture(GL_RGBA16F);
-    const gl::Texture small = emptyTexture(GL_RGBA16F, {8, 8});
+    const gl::Texture integers = test::makeTexture(device(), GL_RGBA32UI, kSize);
+    const gl::Texture shared = test::makeTexture(device(), GL_RGB9_E5, kSize);
+    const gl::Texture floats = test::makeTexture(device(), GL_RGBA16F, kSize);
+    const gl::Texture small = test::makeTexture(device(), GL_RGBA16F, {8, 8});
     const auto refused = [&](auto&& change, const std::string& text) {
         RefractionReceiver receiver = receiverOf(drawn);
         GLuint target = floats.id();

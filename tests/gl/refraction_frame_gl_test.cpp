@@ -1,6 +1,7 @@
 // What an engine's frame asks of refraction: several objects, deformed ones, open ones, none.
 
 #include "gl/support/ball_frame.hpp"
+#include "gl/support/host_draw.hpp"
 
 #include <reference/shapes.hpp>
 
@@ -110,14 +111,7 @@ TEST_F(RefractionFrameGlTest, DeformedByAVertexShader) {
     const TriangleMesh mesh = ref::makeIcosphere({0, 0, 0}, 1.0f, 4);
     auto buffers = MeshBuffers::upload(device(), mesh).value();
     const MeshView host = buffers.view();
-    auto vertexArray = gl::VertexArray::create(device().state(), "test");
-    gl().VertexArrayVertexBuffer(vertexArray.id(), 0, host.vertexBuffer,
-                                 static_cast<GLintptr>(host.positionOffsetBytes),
-                                 static_cast<GLsizei>(host.vertexStrideBytes));
-    gl().VertexArrayElementBuffer(vertexArray.id(), host.indexBuffer);
-    gl().EnableVertexArrayAttrib(vertexArray.id(), 0);
-    gl().VertexArrayAttribFormat(vertexArray.id(), 0, 3, GL_FLOAT, GL_FALSE, 0);
-    gl().VertexArrayAttribBinding(vertexArray.id(), 0, 0);
+    const auto vertexArray = test::makeVertexArray(device(), host);
     glm::vec4 place(0.0f);
     DrawSource draws;
     draws.vertexShader = R"(

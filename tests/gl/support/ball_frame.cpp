@@ -66,10 +66,7 @@ RefractionReceiver BallFrameTest::receiverOf(const GBuffer& drawn, std::uint32_t
 }
 
 std::vector<glm::vec4> BallFrameTest::read(GLuint texture) {
-    std::vector<glm::vec4> pixels(std::size_t{kSize.x} * kSize.y, glm::vec4(-7.0f));
-    gl().GetTextureImage(texture, 0, GL_RGBA, GL_FLOAT,
-                         static_cast<GLsizei>(pixels.size() * sizeof(glm::vec4)), pixels.data());
-    return pixels;
+    return readPixels(device(), texture, kSize);
 }
 
 glm::vec3 BallFrameTest::cubeDirection(std::size_t texel, unsigned size) {

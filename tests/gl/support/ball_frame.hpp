@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gl/support/gl_test.hpp"
+#include "gl/support/host_draw.hpp"
 
 #include <lamina/refraction/refraction.hpp>
 
@@ -38,20 +39,13 @@ protected:
     [[nodiscard]] std::optional<BallHit> hitBalls(std::span<const Ball> balls, unsigned x,
                                                   unsigned y) const;
 
-    /// A 2D texture; no texels: of undefined content.
     template<class Texel>
     gl::Texture texture(GLenum internal, GLenum format, GLenum type,
                         const std::vector<Texel>& texels, const glm::uvec2& size = kSize) {
-        auto texture = gl::Texture::create(device().state(), "test", GL_TEXTURE_2D);
-        const auto width = static_cast<GLsizei>(size.x), height = static_cast<GLsizei>(size.y);
-        gl().TextureStorage2D(texture.id(), 1, internal, width, height);
-        if (!texels.empty())
-            gl().TextureSubImage2D(texture.id(), 0, 0, 0, width, height, format, type,
-                                   texels.data());
+        auto texture = makeTexture(device(), internal, size);
+        gl().TextureSubImage2D(texture.id(), 0, 0, 0, static_cast<GLsizei>(size.x),
+                               static_cast<GLsizei>(size.y), format, type, texels.data());
         return texture;
-    }
-    gl::Texture emptyTexture(GLenum internal, const glm::uvec2& size = kSize) {
-        return texture<float>(internal, GL_RED, GL_FLOAT, {}, size);
     }
 
     /// Depths, normals and the numbers (from 1) of balls.
