@@ -6,6 +6,9 @@
 layout(std430, binding = LAMINA_SOLID_CELLS_BINDING) buffer LaminaSolidCells {
     uint laminaCellPlanes[];
 };
+layout(std430, binding = LAMINA_SOLID_TOUCHED_BINDING) buffer LaminaSolidTouched {
+    uint laminaTouched[];
+};
 
 // First and last step of line (p, q) in the grid; first > last for lines that miss it.
 ivec2 laminaStepsInGrid(int p, int q) {
@@ -23,18 +26,39 @@ ivec2 laminaStepsInGrid(int p, int q) {
 
 // Adds 1 or -1 to one of the 32 numbers modulo 16 whose bits stand in the four planes of a cell. Each
 // toggle hands the next plane a carry or a borrow that depends on the bit it found, so every order of
-// additions, also interleaved ones, gives the same sum.
+// additions, also interleaved ones, gives the same sum. Weights alternate in sign: a carry subtracts.
 void laminaAddSigned(uint cell, uint bit, bool isIncrement) {
     for (uint plane = 0u; plane < 4u; ++plane) {
         uint found = atomicXor(laminaCellPlanes[cell * 4u + plane], bit);
         if (((found & bit) != 0u) != isIncrement)
             return;
+        isIncrement = !isIncrement;
     }
+}
+
+// Does any contested voxel ask for the line of a diagonal?
+bool laminaIsNeeded(int p, int q) {
+    ivec2 line = laminaDiagonal(p, q);
+    if (line.x < laminaLine.rows.x || line.x >= laminaLine.rows.x + laminaLine.rows.y)
+        return false;
+    return ((laminaTouched[laminaTouchedIndex(line.x, line.y >> 5)] >> uint(line.y & 31)) & 1u) != 0u;
+}
+
+// Marks the cell of an axis.
+void laminaTouch(int row, int slot, int word) {
+    bool isAlongZ = laminaLine.rows.z == LAMINA_SOLID_ALONG_Z;
+    uint bit = uint(isAlongZ ? word : slot);
+    uint index = laminaTouchedIndex(row, isAlongZ ? slot : word) + (bit >> 5);
+    if ((laminaTouched[index] & (1u << (bit & 31u))) == 0u)
+        atomicOr(laminaTouched[index], 1u << (bit & 31u));
 }
 
 // Counts the crossing at the last voxel of the line whose centre lies before it; at the line's way in
 // or out, one step outside the grid, if that is elsewhere.
 void laminaCross(LaminaCrossingTriangle triangle, int p, int q) {
+    bool isAxis = laminaLine.slope.xy == ivec2(0);
+    if (!isAxis && !laminaIsNeeded(p, q))
+        return;
     dvec2 center = dvec2(p, q) + 0.5lf;
     if (!laminaOwnsPoint(triangle.columns, center))
         return;
@@ -43,9 +67,10 @@ void laminaCross(LaminaCrossingTriangle triangle, int p, int q) {
         return;
     int last = int(clamp(laminaSliceBefore(triangle.columns, center), double(steps.x - 1), double(steps.y)));
     ivec3 place = laminaCellPlace(p + laminaLine.slope.x * last, q + laminaLine.slope.y * last, last);
-    if (place.x < laminaLine.rows.x || place.x >= laminaLine.rows.x + laminaLine.rows.y)
-        return;
-    laminaAddSigned(laminaCellIndex(place.x, place.y, place.z >> 5), 1u << uint(place.z & 31), triangle.isCounterClockwise);
+    int word = place.z >> 5;
+    laminaAddSigned(laminaCellIndex(place.x, place.y, word), 1u << uint(place.z & 31), triangle.isCounterClockwise);
+    if (isAxis)
+        laminaTouch(place.x, place.y, word);
 }
 
 #endif

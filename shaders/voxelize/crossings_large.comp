@@ -1,5 +1,5 @@
 // crossings.comp for the enqueued triangles of one class; work is shared as in overlap_large.comp.
-// permute LAMINA_CROSSINGS = LAMINA_CROSSINGS_PARITY LAMINA_CROSSINGS_SIGNED
+// permute LAMINA_CROSSINGS = LAMINA_CROSSINGS_PARITY LAMINA_CROSSINGS_SIGNED LAMINA_CROSSINGS_CHECKED
 #include <voxelize/overlap_source.glsl>
 #include <voxelize/crossing_triangle.glsl>
 #include <voxelize/crossing_parity.glsl>
@@ -23,4 +23,7 @@ void main() {
         if (all(lessThanEqual(column, box.last.xy)))
             laminaCross(triangle, column.x, column.y);
     }
+#if LAMINA_CROSSINGS == LAMINA_CROSSINGS_CHECKED
+    laminaAddSum(LAMINA_SUM_CROSSINGS, gl_LocalInvocationIndex, laminaCrossings);
+#endif
 }

@@ -1,10 +1,8 @@
-// Counts the contested voxels whose votes were close, and leaves the mark on them alone. One invocation
-// owns one texel of a listed tile.
+// Counts the contested voxels whose votes were close, leaves the mark on them alone, and the planes of
+// the votes zero. One invocation owns one texel of a listed tile.
 #include <voxelize/solid_tiles.glsl>
 
-layout(std430, binding = LAMINA_SOLID_VOTES_BINDING) readonly buffer LaminaVotePlane {
-    uvec4 laminaVotes[];
-} laminaVotePlanes[3];
+#include <voxelize/solid_votes.glsl>
 layout(std430, binding = LAMINA_SOLID_CONTESTED_BINDING) buffer LaminaContested {
     uvec4 laminaContested[];
 };
@@ -22,5 +20,7 @@ void main() {
     uvec4 close = (~eights & fours & (ones | twos)) | (eights & ~fours & ~twos);
     uvec4 doubtful = close & laminaContested[index];
     laminaContested[index] = doubtful;
+    for (int plane = 0; plane < 3; ++plane)
+        laminaVotePlanes[plane].laminaVotes[index] = uvec4(0u);
     laminaTallyAdd(LAMINA_TALLY_DOUBTFUL, uint(laminaBitCount(doubtful)));
 }

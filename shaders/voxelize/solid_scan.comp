@@ -1,6 +1,7 @@
-// The votes of the lines of one direction across the words of the grid.
+// The votes of the needed lines of one diagonal.
 //
 // One invocation owns one word of a row: 32 neighbouring lines, and those that take their bits over.
+// Words without needed lines have no counts.
 //   1. From the first slot to the last, each cell's signed crossings become the sum of those before the
 //      cell's voxel. Where a line leaves the grid, its margin is left with the sum of the whole line,
 //      and the next line begins.
@@ -13,6 +14,9 @@ layout(local_size_x = LAMINA_OVERLAP_GROUP_SIZE) in;
 
 layout(std430, binding = LAMINA_SOLID_CELLS_BINDING) buffer LaminaSolidCells {
     uvec4 laminaCells[];
+};
+layout(std430, binding = LAMINA_SOLID_TOUCHED_BINDING) readonly buffer LaminaSolidTouched {
+    uint laminaTouched[];
 };
 
 // Bits [low, high) of those from 0 to 31.
@@ -59,13 +63,13 @@ void main() {
     uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * LAMINA_OVERLAP_GROUP_SIZE + gl_LocalInvocationIndex;
     int word = int(index % uint(laminaLine.period.w));
     int row = int(index / uint(laminaLine.period.w)) + laminaLine.rows.x;
-    if (row >= laminaLine.rows.x + laminaLine.rows.y)
+    if (row >= laminaLine.rows.x + laminaLine.rows.y || laminaTouched[laminaTouchedIndex(row, word)] == 0u)
         return;
     LaminaLinePlace place = laminaLinePlace(row, 0, word);
     uint cell = laminaCellIndex(row, 0, word);
     uvec4 before = uvec4(0u);
     for (int slot = 0; slot < laminaLine.period.z; ++slot) {
-        uvec4 crossed = laminaCells[cell];
+        uvec4 crossed = laminaCellCounts(laminaCells[cell]);
         if ((before | crossed) != uvec4(0u)) {
             uvec4 inGrid = laminaBitsInGrid(place, slot);
             laminaCells[cell] = before;

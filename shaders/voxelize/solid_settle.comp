@@ -2,13 +2,12 @@
 //
 // One invocation owns one texel, a work group a tile.
 //   1. Six votes set the voxel, none leaves it clear; anything between is contested. A contested voxel
-//      keeps its count, to which the diagonals add; its bit in the grid is the count's highest.
+//      keeps its count, to which the diagonals add; its bit in the grid is the count's highest. If the
+//      mesh is closed, all lines say the same: those along z alone have voted.
 //   2. The first invocation lists the tile if any has found a contested voxel; hence the barrier.
 #include <voxelize/solid_tiles.glsl>
 
-layout(std430, binding = LAMINA_SOLID_VOTES_BINDING) readonly buffer LaminaVotePlane {
-    uvec4 laminaVotes[];
-} laminaVotePlanes[3];
+#include <voxelize/solid_votes.glsl>
 layout(std430, binding = LAMINA_SOLID_CONTESTED_BINDING) writeonly buffer LaminaContested {
     uvec4 laminaContested[];
 };
@@ -25,12 +24,18 @@ void main() {
         uvec4 ones = laminaVotePlanes[0].laminaVotes[index];
         uvec4 twos = laminaVotePlanes[1].laminaVotes[index];
         uvec4 fours = laminaVotePlanes[2].laminaVotes[index];
-        uvec4 agreed = twos & fours;
-        uvec4 contested = (ones | twos | fours) & ~agreed;
+        bool isClosed = laminaTally[LAMINA_TALLY_CLOSED] != 0u;
+        uvec4 votes = ones | twos | fours;
+        uvec4 agreed = isClosed ? votes : twos & fours;
+        uvec4 contested = votes & ~agreed;
         laminaTexels[index] = agreed;
         laminaContested[index] = contested;
-        if (contested != uvec4(0u))
+        if (contested != uvec4(0u)) {
             laminaTileIsContested = 1u;
+        } else if (votes != uvec4(0u)) {
+            for (int plane = 0; plane < 3; ++plane)
+                laminaVotePlanes[plane].laminaVotes[index] = uvec4(0u);
+        }
     }
     barrier();
     if (gl_LocalInvocationIndex == 0u && laminaTileIsContested != 0u) {

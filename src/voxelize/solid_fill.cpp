@@ -12,8 +12,10 @@ constexpr std::uint64_t kHeadBytes = 16;
 } // namespace
 
 Result<void> SolidFill::initialize() {
-    auto program = gl::findOrBuildProgram(
-        *mDevice, {"lamina solid fill", {{GL_COMPUTE_SHADER, "voxelize/solid_fill.comp"}}, {}});
+    auto program =
+        gl::findOrBuildProgram(*mDevice, {"lamina solid fill",
+                                          {{GL_COMPUTE_SHADER, "voxelize/solid_fill.comp"}},
+                                          {{"LAMINA_CROSSINGS", "LAMINA_CROSSINGS_PARITY"}}});
     if (!program)
         return program.error();
     mProgram = *program;

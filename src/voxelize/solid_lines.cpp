@@ -67,10 +67,16 @@ Result<SolidCells> solidCells(const gl::DeviceState& device, const SolidLine& li
     cells.constants.grid = glm::ivec4(counts, 0);
     cells.constants.slope = {line.slope, 0, 0};
     cells.constants.rows.z = line.along;
-    // Around the grid a voxel of margin, which holds what lies before and beyond it on a line.
+    // What a line crosses before its first voxel takes a slot or a bit of its own; around the grid
+    // of a diagonal there is a voxel of margin.
     if (line.along == LAMINA_SOLID_ALONG_Z) {
-        const int bits = roundedUp(counts.z + 2, 32);
+        const int bits = roundedUp(counts.z + 1, 32);
         cells.constants.period = {counts.x, bits, counts.y, bits / 32};
+        cells.constants.rows.w = roundedUp(bits / 32, 32) / 32;
+    } else if (line.slope == glm::ivec2(0)) {
+        const int bits = roundedUp(counts.y, 32);
+        cells.constants.period = {counts.x, bits, counts.z + 1, bits / 32};
+        cells.constants.rows.w = roundedUp(counts.z + 1, 32) / 32;
     } else {
         const int rows = counts.x + 2;
         const int bits = roundedUp(counts.y + 2, 32);
@@ -78,6 +84,7 @@ Result<SolidCells> solidCells(const gl::DeviceState& device, const SolidLine& li
         cells.constants.period = {rows, bits, slots, bits / 32};
         cells.constants.slope.z = roundedUp(slots, rows);
         cells.constants.slope.w = roundedUp(slots, bits);
+        cells.constants.rows.w = 1;
     }
     const glm::ivec4& period = cells.constants.period;
     cells.rowBytes = std::uint64_t{kCellBytes} * static_cast<std::uint64_t>(period.z) *
@@ -106,14 +113,32 @@ glm::dmat4 gridToLines(const SolidLine& line) {
     return glm::translate(matrix, -kNudge);
 }
 
-GridPart linesPart(const SolidLine& line, const glm::uvec3& size) {
+std::vector<GridPart> linesParts(const SolidLine& line, const glm::uvec3& size,
+                                 const shared::LaminaSolidLine& batch) {
     const glm::ivec3 counts = sizeAlong(line, size);
     const glm::ivec2 reach = line.slope * (counts.z - 1);
-    GridPart part;
-    part.low = glm::ivec3(-glm::max(reach, 0), 0);
-    part.high = {counts.x - 1 - std::min(reach.x, 0), counts.y - 1 - std::min(reach.y, 0),
-                 counts.z - 1};
-    return part;
+    GridPart all;
+    all.low = glm::ivec3(-glm::max(reach, 0), 0);
+    all.high = {counts.x - 1 - std::min(reach.x, 0), counts.y - 1 - std::min(reach.y, 0),
+                counts.z - 1};
+    // Line p has row p of an axis, p + 1 - slope modulo the period of a diagonal. Where that would
+    // take many parts, the programs reject the other lines.
+    constexpr int kMostParts = 4;
+    const int period = batch.period.x;
+    if (batch.rows.y == period || all.high.x - all.low.x + 1 > (kMostParts - 1) * period)
+        return {all};
+    int first = batch.rows.x - (line.slope == glm::ivec2(0) ? 0 : 1 - line.slope.x);
+    while (first > all.low.x)
+        first -= period;
+    std::vector<GridPart> parts;
+    for (; first <= all.high.x; first += period) {
+        GridPart part = all;
+        part.low.x = std::max(all.low.x, first);
+        part.high.x = std::min(all.high.x, first + batch.rows.y - 1);
+        if (part.low.x <= part.high.x)
+            parts.push_back(part);
+    }
+    return parts;
 }
 
 } // namespace lamina

@@ -39,11 +39,23 @@ struct SolidCells {
     [[nodiscard]] bool isAlongWords() const { return constants.rows.z == LAMINA_SOLID_ALONG_Z; }
     /// Invocations of the program that scans a batch.
     [[nodiscard]] std::uint64_t scans(std::uint32_t index) const {
-        const int perRow = isAlongWords() ? constants.period.z : constants.period.w;
-        return static_cast<std::uint64_t>(batch(index).rows.y) * static_cast<std::uint64_t>(perRow);
+        return static_cast<std::uint64_t>(batch(index).rows.y) * scansPerRow();
+    }
+    [[nodiscard]] std::uint64_t bytes(std::uint32_t index) const {
+        return rowBytes * static_cast<std::uint64_t>(batch(index).rows.y);
+    }
+    /// Of the touched bits of a batch.
+    [[nodiscard]] std::uint64_t touchedBytes() const {
+        return rowsPerBatch * scansPerRow() * static_cast<std::uint64_t>(constants.rows.w) *
+               sizeof(std::uint32_t);
     }
     /// The constants of a batch.
     [[nodiscard]] shared::LaminaSolidLine batch(std::uint32_t index) const;
+
+private:
+    [[nodiscard]] std::uint64_t scansPerRow() const {
+        return static_cast<std::uint64_t>(isAlongWords() ? constants.period.z : constants.period.w);
+    }
 };
 
 /// size: of the grid, in voxels.
@@ -54,7 +66,9 @@ struct SolidCells {
 /// Grid coordinates to (p, q, s): lines become columns, steps become slices.
 [[nodiscard]] glm::dmat4 gridToLines(const SolidLine& line);
 
-/// The columns of all lines that meet the grid, as a part for OverlapPasses.
-[[nodiscard]] GridPart linesPart(const SolidLine& line, const glm::uvec3& size);
+/// The columns of the lines that meet the grid and whose cells are those of a batch, as parts for
+/// OverlapPasses.
+[[nodiscard]] std::vector<GridPart> linesParts(const SolidLine& line, const glm::uvec3& size,
+                                               const shared::LaminaSolidLine& batch);
 
 } // namespace lamina

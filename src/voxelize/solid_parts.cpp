@@ -26,6 +26,10 @@ std::uint64_t tileCount(const GridPart& part) {
     return std::uint64_t{tiles.x} * tiles.y * tiles.z;
 }
 
+shared::uvec4 texelGroups(const GridPart& part) {
+    return {tilesOf(part), 0};
+}
+
 Result<void> checkSolidSize(const glm::uvec3& size, SolidRule rule) {
     if (std::max({size.x, size.y, size.z}) <= kMaxSide)
         return {};
@@ -66,8 +70,8 @@ void SolidParts::begin(std::span<const GridPart> parts, const GridTransform& tra
 }
 
 void SolidParts::dispatchTexels(std::size_t part) const {
-    const glm::uvec3 tiles = tilesOf(mParts[part]);
-    mDevice->gl.DispatchCompute(tiles.x, tiles.y, tiles.z);
+    const shared::uvec4 groups = texelGroups(mParts[part]);
+    mDevice->gl.DispatchCompute(groups.x, groups.y, groups.z);
 }
 
 void SolidParts::bind(std::size_t part, GLuint words) const {
@@ -90,7 +94,7 @@ Result<SolidReport> SolidParts::download() const {
     if (!mHasReport)
         return Error{ErrorCode::InvalidArgument,
                      "solid report: expected voxels, found none; voxelize first"};
-    std::array<GLuint, LAMINA_TALLY_DISPATCHES> tally{};
+    std::array<GLuint, LAMINA_TALLY_SUMS> tally{};
     mDevice->gl.GetNamedBufferSubData(mTally.id(), 0, sizeof tally, tally.data());
     const auto number = [&tally](std::size_t index) {
         return tally[index] | std::uint64_t{tally[index + 1]} << 32u;
@@ -100,6 +104,13 @@ Result<SolidReport> SolidParts::download() const {
     report.enclosedVoxels = number(LAMINA_TALLY_ENCLOSED);
     report.isFloodComplete = tally[LAMINA_TALLY_CHANGED] == 0;
     return report;
+}
+
+bool SolidParts::downloadIsContested() const {
+    GLuint isContested = 0;
+    mDevice->gl.GetNamedBufferSubData(mTally.id(), LAMINA_TALLY_CONTESTED * sizeof(GLuint),
+                                      sizeof isContested, &isContested);
+    return isContested != 0;
 }
 
 } // namespace lamina

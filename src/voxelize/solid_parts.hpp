@@ -17,6 +17,10 @@ namespace lamina {
 /// Runs of 64 texels along x: work groups over a part.
 [[nodiscard]] std::uint64_t tileCount(const GridPart& part);
 
+/// Work groups of a program that runs over all texels of a part (solid_part.glsl), as an indirect
+/// dispatch.
+[[nodiscard]] shared::uvec4 texelGroups(const GridPart& part);
+
 /// The parts of a grid as the programs of the solid rules see them, and the tally they report to.
 class SolidParts {
 public:
@@ -48,6 +52,8 @@ public:
     /// What the programs reported; whether a flood ended in the midst. Waits for the GPU.
     /// Errors: InvalidArgument before the first begin().
     [[nodiscard]] Result<SolidReport> download() const;
+    /// After the first begin(). Waits for the GPU.
+    [[nodiscard]] bool downloadIsContested() const;
 
 private:
     std::shared_ptr<gl::DeviceState> mDevice;

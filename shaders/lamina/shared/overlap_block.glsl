@@ -38,9 +38,11 @@
 #define LAMINA_COLORS_FLOAT 1u
 #define LAMINA_COLORS_UNORM8 2u
 
-// What crossings of triangles with columns are noted as: SolidRule::Parity, SolidRule::Voted.
+// What crossings of triangles with columns are noted as: toggles for SolidRule::Parity; signed counts for
+// SolidRule::Voted; toggles, and sums that tell whether they are all that SolidRule::Voted needs.
 #define LAMINA_CROSSINGS_PARITY 0
 #define LAMINA_CROSSINGS_SIGNED 1
+#define LAMINA_CROSSINGS_CHECKED 2
 
 // Bindings of the overlap programs.
 #define LAMINA_OVERLAP_BLOCK_BINDING 0

@@ -9,8 +9,6 @@
 // diagonals vote too. With 14 votes a majority is 8 or more: the top bit of a count of four bits.
 #define LAMINA_SOLID_AXIS_COUNT 3
 #define LAMINA_SOLID_LINE_COUNT 7
-#define LAMINA_SOLID_VOTERS_AXES 0
-#define LAMINA_SOLID_VOTERS_DIAGONALS 1
 // A contested voxel is doubtful if the smaller side has at least so many votes.
 #define LAMINA_SOLID_DOUBTFUL_VOTES 5
 
@@ -20,9 +18,11 @@
 #define LAMINA_SOLID_PART_BINDING 2
 #define LAMINA_SOLID_UNIFORM_COUNT 3
 #define LAMINA_SOLID_VOTES_BINDING 1
+#define LAMINA_SOLID_MARKS_BINDING 1
 #define LAMINA_SOLID_CELLS_BINDING 5
 #define LAMINA_SOLID_TALLY_BINDING 4
 #define LAMINA_SOLID_CONTESTED_BINDING 6
+#define LAMINA_SOLID_TOUCHED_BINDING 6
 #define LAMINA_SOLID_TILES_BINDING 7
 #define LAMINA_FLOOD_OUTSIDE_BINDING 1
 #define LAMINA_FLOOD_CARRY_BINDING 2
@@ -44,7 +44,8 @@ struct LaminaSolidLine {
     ivec4 slope;
     // Cells: rows, bits along a row's words, slots of a row, words of a slot.
     ivec4 period;
-    // First row that the cells' binding holds, number of rows, LAMINA_SOLID_ALONG_*, unused.
+    // First row that the cells' binding holds, number of rows, LAMINA_SOLID_ALONG_*, words of a run of
+    // touched bits (solid_cells.glsl).
     ivec4 rows;
 };
 
@@ -59,13 +60,25 @@ struct LaminaSolidPart {
 };
 
 // Words of the tally: two numbers, each its lower and its higher 32 bits; whether a round of a flood
-// found anything; whether any voxel is contested; from LAMINA_TALLY_DISPATCHES on indirect dispatches,
-// four words each.
+// found anything; whether any voxel is contested; whether the mesh is closed; whether its parity is its
+// solid; from LAMINA_TALLY_SUMS on the sums of crossing_check.glsl, from LAMINA_TALLY_DISPATCHES on
+// indirect dispatches, four words each.
 #define LAMINA_TALLY_DOUBTFUL 0
 #define LAMINA_TALLY_ENCLOSED 2
 #define LAMINA_TALLY_CHANGED 4
 #define LAMINA_TALLY_CONTESTED 5
-#define LAMINA_TALLY_DISPATCHES 8
+#define LAMINA_TALLY_CLOSED 6
+#define LAMINA_TALLY_CLEAN 7
+#define LAMINA_TALLY_SUMS 8
+#define LAMINA_TALLY_DISPATCHES 264
+
+// Sums, of two words each, in so many slots, lest all invocations add to the same words. A slot: of the
+// edges, of the crossings, of the changes along filled columns, unused.
+#define LAMINA_SUM_SLOTS 32
+#define LAMINA_SUM_STRIDE 8
+#define LAMINA_SUM_EDGES 0
+#define LAMINA_SUM_CROSSINGS 2
+#define LAMINA_SUM_CHANGES 4
 
 // Rounds of a flood, at most. A round finds what is one more turn of a passage away from the outside.
 #define LAMINA_FLOOD_ROUNDS 256
