@@ -36,14 +36,6 @@ void laminaAddSigned(uint cell, uint bit, bool isIncrement) {
     }
 }
 
-// Does any contested voxel ask for the line of a diagonal?
-bool laminaIsNeeded(int p, int q) {
-    ivec2 line = laminaDiagonal(p, q);
-    if (line.x < laminaLine.rows.x || line.x >= laminaLine.rows.x + laminaLine.rows.y)
-        return false;
-    return ((laminaTouched[laminaTouchedIndex(line.x, line.y >> 5)] >> uint(line.y & 31)) & 1u) != 0u;
-}
-
 // Marks the cell of an axis.
 void laminaTouch(int row, int slot, int word) {
     bool isAlongZ = laminaLine.rows.z == LAMINA_SOLID_ALONG_Z;
@@ -56,9 +48,6 @@ void laminaTouch(int row, int slot, int word) {
 // Counts the crossing at the last voxel of the line whose centre lies before it; at the line's way in
 // or out, one step outside the grid, if that is elsewhere.
 void laminaCross(LaminaCrossingTriangle triangle, int p, int q) {
-    bool isAxis = laminaLine.slope.xy == ivec2(0);
-    if (!isAxis && !laminaIsNeeded(p, q))
-        return;
     dvec2 center = dvec2(p, q) + 0.5lf;
     if (!laminaOwnsPoint(triangle.columns, center))
         return;
@@ -67,9 +56,11 @@ void laminaCross(LaminaCrossingTriangle triangle, int p, int q) {
         return;
     int last = int(clamp(laminaSliceBefore(triangle.columns, center), double(steps.x - 1), double(steps.y)));
     ivec3 place = laminaCellPlace(p + laminaLine.slope.x * last, q + laminaLine.slope.y * last, last);
+    if (place.x < laminaLine.rows.x || place.x >= laminaLine.rows.x + laminaLine.rows.y)
+        return;
     int word = place.z >> 5;
     laminaAddSigned(laminaCellIndex(place.x, place.y, word), 1u << uint(place.z & 31), triangle.isCounterClockwise);
-    if (isAxis)
+    if (laminaLine.rows.w > 0)
         laminaTouch(place.x, place.y, word);
 }
 

@@ -9,19 +9,12 @@
 // Along z, the row and the slot are the column, and the bits are the steps plus 1.
 //
 // Of the axes' cells few are not zero. A bit for each, in a run of words for each row and word (along z:
-// column), tells which have been touched. For the diagonals the run is one word, whose bits are the lines
-// that are needed. All cells and bits are zero between two calls.
+// column), tells which have been touched. All cells and bits are zero between two calls.
 #include <lamina/shared/solid_block.glsl>
 
 layout(std140, binding = LAMINA_SOLID_LINE_BINDING) uniform LaminaSolidLineBlock {
     LaminaSolidLine laminaLine;
 };
-
-// Row and bit of line (p, q) of a diagonal.
-ivec2 laminaDiagonal(int p, int q) {
-    ivec2 line = ivec2(p, q) + 1 - laminaLine.slope.xy + laminaLine.slope.zw;
-    return line % laminaLine.period.xy;
-}
 
 // Row, slot and bit of the voxel at P, Q and step s; each may lie one outside the grid.
 ivec3 laminaCellPlace(int p, int q, int s) {
@@ -30,8 +23,8 @@ ivec3 laminaCellPlace(int p, int q, int s) {
         return ivec3(p, q, slot);
     if (laminaLine.slope.xy == ivec2(0))
         return ivec3(p, slot, q);
-    ivec2 line = laminaDiagonal(p - laminaLine.slope.x * s, q - laminaLine.slope.y * s);
-    return ivec3(line.x, slot, line.y);
+    ivec2 line = ivec2(p, q) + 1 - laminaLine.slope.xy * slot + laminaLine.slope.zw;
+    return ivec3(line.x % laminaLine.period.x, slot, line.y % laminaLine.period.y);
 }
 
 // The row must be one that the binding holds.

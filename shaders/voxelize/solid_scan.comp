@@ -1,7 +1,6 @@
-// The votes of the needed lines of one diagonal.
+// The votes of the lines of one diagonal.
 //
 // One invocation owns one word of a row: 32 neighbouring lines, and those that take their bits over.
-// Words without needed lines have no counts.
 //   1. From the first slot to the last, each cell's signed crossings become the sum of those before the
 //      cell's voxel. Where a line leaves the grid, its margin is left with the sum of the whole line,
 //      and the next line begins.
@@ -14,9 +13,6 @@ layout(local_size_x = LAMINA_OVERLAP_GROUP_SIZE) in;
 
 layout(std430, binding = LAMINA_SOLID_CELLS_BINDING) buffer LaminaSolidCells {
     uvec4 laminaCells[];
-};
-layout(std430, binding = LAMINA_SOLID_TOUCHED_BINDING) readonly buffer LaminaSolidTouched {
-    uint laminaTouched[];
 };
 
 // Bits [low, high) of those from 0 to 31.
@@ -63,7 +59,7 @@ void main() {
     uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * LAMINA_OVERLAP_GROUP_SIZE + gl_LocalInvocationIndex;
     int word = int(index % uint(laminaLine.period.w));
     int row = int(index / uint(laminaLine.period.w)) + laminaLine.rows.x;
-    if (row >= laminaLine.rows.x + laminaLine.rows.y || laminaTouched[laminaTouchedIndex(row, word)] == 0u)
+    if (row >= laminaLine.rows.x + laminaLine.rows.y)
         return;
     LaminaLinePlace place = laminaLinePlace(row, 0, word);
     uint cell = laminaCellIndex(row, 0, word);

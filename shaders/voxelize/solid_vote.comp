@@ -4,7 +4,6 @@
 // more than it has words because cells have a margin.
 #include <voxelize/solid_tiles.glsl>
 #include <voxelize/solid_cells.glsl>
-#include <voxelize/solid_texel_cells.glsl>
 
 layout(std430, binding = LAMINA_SOLID_CELLS_BINDING) readonly buffer LaminaSolidCells {
     uvec4 laminaCells[];
@@ -38,12 +37,14 @@ void main() {
     ivec3 place;
     if (!laminaTilePlace(place))
         return;
+    // Diagonals step along x: (P, Q, S) is (y, z, x).
+    ivec3 voxel = laminaPart.low.xyz + ivec3(place.xy, place.z * 128);
+    ivec3 start = laminaCellPlace(voxel.y, voxel.z, voxel.x);
+    if (start.x < laminaLine.rows.x || start.x >= laminaLine.rows.x + laminaLine.rows.y)
+        return;
     uint index = laminaPartIndex(place.x, place.y, place.z);
     uvec4 voters = laminaContested[index];
     if (voters == uvec4(0u))
-        return;
-    ivec3 start = laminaTexelCells(place);
-    if (start.x < laminaLine.rows.x || start.x >= laminaLine.rows.x + laminaLine.rows.y)
         return;
     uvec4 first, second;
     laminaGatherVotes(start, first, second);

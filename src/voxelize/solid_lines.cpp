@@ -84,7 +84,6 @@ Result<SolidCells> solidCells(const gl::DeviceState& device, const SolidLine& li
         cells.constants.period = {rows, bits, slots, bits / 32};
         cells.constants.slope.z = roundedUp(slots, rows);
         cells.constants.slope.w = roundedUp(slots, bits);
-        cells.constants.rows.w = 1;
     }
     const glm::ivec4& period = cells.constants.period;
     cells.rowBytes = std::uint64_t{kCellBytes} * static_cast<std::uint64_t>(period.z) *

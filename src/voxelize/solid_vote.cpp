@@ -67,7 +67,7 @@ Result<void> SolidVote::initialize() {
           build(mSettleProgram, "voxelize/solid_settle.comp"),
           build(mScanProgram, "voxelize/solid_scan.comp"),
           build(mVoteProgram, "voxelize/solid_vote.comp"),
-          build(mNeedProgram, "voxelize/solid_need.comp"),
+
           build(mWipeProgram, "voxelize/solid_wipe.comp"),
           build(mDoubtProgram, "voxelize/solid_doubt.comp")})
         if (!built)
@@ -198,14 +198,11 @@ void SolidVote::dispatch(std::size_t number) const {
     mDevice->gl.DispatchComputeIndirect(SolidParts::dispatchOffset(number));
 }
 
-void SolidVote::dispatchParts(GLuint program, GLuint words, std::size_t first, GLuint marks) const {
+void SolidVote::dispatchParts(GLuint program, GLuint words, std::size_t first) const {
     mDevice->gl.UseProgram(program);
     for (std::size_t part = 0; part < mParts.count(); ++part) {
         bindPart(part, words);
         mParts.bindRange(part, LAMINA_SOLID_CONTESTED_BINDING, mContested.id(), 0);
-        if (marks != 0)
-            mDevice->gl.BindBuffersBase(GL_SHADER_STORAGE_BUFFER, LAMINA_SOLID_MARKS_BINDING, 1,
-                                        &marks);
         dispatch(first + part);
     }
     mDevice->gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
@@ -283,12 +280,6 @@ void SolidVote::voteAxis(OverlapPasses& passes, std::span<const OverlapSource> s
     }
 }
 
-void SolidVote::clearTouched(std::size_t line) const {
-    mDevice->gl.ClearNamedBufferSubData(mTouched.id(), GL_R32UI, 0,
-                                        static_cast<GLsizeiptr>(mLines[line].touchedBytes()),
-                                        GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-}
-
 void SolidVote::voteDiagonals(OverlapPasses& passes, std::span<const OverlapSource> sources,
                               const GridTransform& transform, GLuint words, std::size_t chunks) {
     const GladGLContext& gl = mDevice->gl;
@@ -297,18 +288,14 @@ void SolidVote::voteDiagonals(OverlapPasses& passes, std::span<const OverlapSour
         beginLine(passes, sources, line, transform);
         for (std::uint32_t batch = 0; batch < mLines[line].batches(); ++batch) {
             bindBatch(line, batch);
-            dispatchParts(mNeedProgram, words, 0, mTouched.id());
-            bindBatch(line, batch);
             countCrossings(passes, batch, chunks);
             gl.UseProgram(mScanProgram);
             dispatch(scan);
             gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
             dispatchParts(mVoteProgram, words, 0);
-            bindBatch(line, batch);
             gl.UseProgram(mWipeProgram);
             dispatch(scan++);
-            gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-            clearTouched(line);
+            gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
         }
     }
     dispatchParts(mDoubtProgram, words, 0);

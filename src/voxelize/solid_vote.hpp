@@ -57,10 +57,8 @@ private:
     /// Binds votes and words of a part.
     void bindPart(std::size_t part, GLuint words) const;
     void dispatch(std::size_t number) const;
-    /// The dispatches from `first` on, one for each part; the listed tiles are at 0. marks: bound
-    /// instead of a plane of votes.
-    void dispatchParts(GLuint program, GLuint words, std::size_t first, GLuint marks = 0) const;
-    void clearTouched(std::size_t line) const;
+    /// The dispatches from `first` on, one for each part; those over the listed tiles are at 0.
+    void dispatchParts(GLuint program, GLuint words, std::size_t first) const;
     /// Empties the dispatches [first, end) that a word of the tally says are not needed.
     void gate(std::size_t first, std::size_t end, int tallyWord, bool isNeededIfSet) const;
     /// Parity, and the verdict whether it is the solid.
@@ -93,7 +91,6 @@ private:
     GLuint mSettleProgram = 0;
     GLuint mScanProgram = 0;
     GLuint mVoteProgram = 0;
-    GLuint mNeedProgram = 0;
     GLuint mWipeProgram = 0;
     GLuint mDoubtProgram = 0;
     std::vector<SolidCells> mLines;          ///< By number in solidLines().

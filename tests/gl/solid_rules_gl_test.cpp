@@ -204,6 +204,50 @@ TEST_F(SolidRulesGlTest, CrossingsAreCountedBeyondParityAndBeyondTheGrid) {
     }
 }
 
+TEST_F(SolidRulesGlTest, ClosedColumnsDoNotMakeAClosedMesh) {
+    // Lid and floor of a box: every line along z goes in and out, parity fills what lies between,
+    // and only the other rays see that it is open.
+    const GridTransform transform =
+        GridTransform::box({glm::dvec3(0), glm::dvec3(40)}, glm::uvec3(40)).value();
+    TriangleMesh sheets = ref::makeBox({5.25f, 6.25f, 7.25f}, {33.25f, 30.25f, 28.25f});
+    std::erase_if(sheets.triangles, [&](const glm::uvec3& t) {
+        return sheets.positions[t.x].z != sheets.positions[t.y].z ||
+               sheets.positions[t.x].z != sheets.positions[t.z].z;
+    });
+    ASSERT_EQ(sheets.triangles.size(), 4u);
+    expectVotes(sheets, transform, "lid and floor");
+    const BitGrid byParity = voxelizeSolid(device(), SolidRule::Parity, sheets, transform).bits;
+    EXPECT_GT(errorShare(voted(sheets, transform).bits, byParity), 0.1);
+}
+
+TEST_F(SolidRulesGlTest, CallsLeaveNothingBehind) {
+    // One voxelizer for grids of several shapes, and for meshes that end its work after parity,
+    // after one axis, after three, and after the diagonals: each as by a voxelizer of its own.
+    const TriangleMesh knot = makeKnotAndBall();
+    const TriangleMesh overlapping = ref::merged(knot, ref::makeCube({0.1f, 0.0f, 0.1f}, 0.7f));
+    auto voxelizer =
+        Voxelizer::create(device(), {.coverage = Coverage::Solid, .solidRule = SolidRule::Voted})
+            .value();
+    auto grid = VoxelGrid::create(device()).value();
+    for (const glm::uvec3 size :
+         {glm::uvec3{70, 61, 140}, glm::uvec3{40, 30, 33}, glm::uvec3{90, 50, 129}}) {
+        const GridTransform transform = GridTransform::box(kUnitBox, size).value();
+        for (const TriangleMesh& mesh :
+             {withMissing(knot, 0.02), knot, withMissing(overlapping, 0.02), overlapping,
+              ref::makePlane({0, 0, 0}, {0.3f, 0.2f, 1.0f}, 1.6f, 7), ref::flipped(knot)}) {
+            auto buffers = MeshBuffers::upload(device(), mesh).value();
+            const GeometrySource source = buffers.view();
+            ASSERT_TRUE(voxelizer->voxelize({&source, 1}, transform, grid));
+            const Solid expected = voted(mesh, transform);
+            EXPECT_TRUE(compare(grid.download().value(), expected.bits)->equal());
+            EXPECT_TRUE(
+                compare(voxelizer->downloadDoubtfulVoxels().value(), expected.doubtful)->equal());
+            EXPECT_EQ(voxelizer->downloadSolidReport()->doubtfulVoxels,
+                      expected.report.doubtfulVoxels);
+        }
+    }
+}
+
 TEST_F(SolidRulesGlTest, DamageIsOutvoted) {
     // A ray meets few triangles, so few rays of a voxel meet a bad one; seven must to make it
     // wrong. Of voxels at the holes themselves that is asked too much, which is the 5 in 10,000

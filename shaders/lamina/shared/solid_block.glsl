@@ -18,7 +18,6 @@
 #define LAMINA_SOLID_PART_BINDING 2
 #define LAMINA_SOLID_UNIFORM_COUNT 3
 #define LAMINA_SOLID_VOTES_BINDING 1
-#define LAMINA_SOLID_MARKS_BINDING 1
 #define LAMINA_SOLID_CELLS_BINDING 5
 #define LAMINA_SOLID_TALLY_BINDING 4
 #define LAMINA_SOLID_CONTESTED_BINDING 6
@@ -45,7 +44,7 @@ struct LaminaSolidLine {
     // Cells: rows, bits along a row's words, slots of a row, words of a slot.
     ivec4 period;
     // First row that the cells' binding holds, number of rows, LAMINA_SOLID_ALONG_*, words of a run of
-    // touched bits (solid_cells.glsl).
+    // touched bits (solid_cells.glsl; of a diagonal, which keeps none, 0).
     ivec4 rows;
 };
 
