@@ -44,7 +44,7 @@ void main() {
     }
     vec4 color;
     for (int i = 0; i < 4; ++i)
-        color[i] = float(laminaSum(first + uint(i)) / (weight * double(LAMINA_COLOR_ONE)));
+        color[i] = laminaBatch.batch.w != 0u ? laminaBatch.color[i] : float(laminaSum(first + uint(i)) / (weight * double(LAMINA_COLOR_ONE)));
     vec3 normal;
     for (int i = 0; i < 3; ++i)
         normal[i] = float((laminaSum(first + 4u + uint(i)) / weight - double(LAMINA_NORMAL_ZERO)) / double(LAMINA_NORMAL_ONE));

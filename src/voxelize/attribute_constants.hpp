@@ -8,7 +8,7 @@ using glm::uvec4;
 using glm::vec4;
 #include "lamina/shared/attribute_block.glsl"
 
-static_assert(sizeof(LaminaAttributeConstants) == 64, "std140");
+static_assert(sizeof(LaminaAttributeConstants) == 80, "std140");
 static_assert(LAMINA_MAX_MATERIALS <= 1 << LAMINA_MATERIAL_BITS, "ids fit the records");
 
 } // namespace lamina::shared

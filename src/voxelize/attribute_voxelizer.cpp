@@ -12,6 +12,8 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,6 +68,21 @@ Result<void> checkMaterialIds(std::span<const GeometrySource> sources, std::size
     return {};
 }
 
+/// The colour of all surfaces, if they have one: no vertex colours, and materials of one colour.
+std::optional<glm::vec4> commonColor(std::span<const OverlapSource> sources,
+                                     std::span<const Material> materials) {
+    std::optional<glm::vec4> common;
+    for (const OverlapSource& source : sources) {
+        if (source.view.colors.buffer != 0 || source.hasVertexMaterials)
+            return std::nullopt;
+        const glm::vec4 color = materials[source.view.materialId].color;
+        if (common && *common != color)
+            return std::nullopt;
+        common = color;
+    }
+    return common;
+}
+
 /// All columns, LAMINA_ATTRIBUTE_PART_SLICES slices each.
 std::vector<GridPart> attributeParts(const glm::uvec3& size) {
     std::vector<GridPart> parts;
@@ -100,12 +117,13 @@ struct AttributeVoxelizer::Impl {
         , materialBlock(gl::Buffer::create(device, "lamina materials")) {}
 
     [[nodiscard]] Result<void> initialize();
-    [[nodiscard]] Result<GLuint> program(const char* shader, std::size_t store) const;
+    [[nodiscard]] Result<GLuint> program(const char* shader, std::size_t store,
+                                         bool hasColors) const;
     /// Makes room for the sums of so many voxels.
     [[nodiscard]] Result<void> reserveSums(std::uint64_t voxels);
     void uploadMaterials(std::span<const Material> materials);
     void uploadBatch(const GridTransform& transform, std::uint64_t firstVoxel, std::uint64_t count,
-                     std::size_t materialCount);
+                     std::size_t materialCount, const std::optional<glm::vec4>& color);
     /// Binds a batch's records and sums, and clears them.
     void beginBatch(const gl::Buffer& records, std::uint64_t firstVoxel, std::uint64_t count);
     void resolve(std::uint64_t voxels) const;
@@ -114,7 +132,7 @@ struct AttributeVoxelizer::Impl {
     OverlapSources sources;
     OverlapPasses passes;
     VoxelRanker ranker;
-    std::array<OverlapPrograms, 2> programs{}; ///< By VoxelStore.
+    std::array<std::array<OverlapPrograms, 2>, 2> programs{}; ///< By VoxelStore; with colours.
     GLuint resolveProgram = 0;
     gl::Buffer batchBlock;
     gl::Buffer materialBlock;
@@ -122,22 +140,25 @@ struct AttributeVoxelizer::Impl {
     gl::Buffer sumsHigh;
 };
 
-Result<GLuint> AttributeVoxelizer::Impl::program(const char* shader, std::size_t store) const {
+Result<GLuint> AttributeVoxelizer::Impl::program(const char* shader, std::size_t store,
+                                                 bool hasColors) const {
     return gl::findOrBuildProgram(*device, {"lamina attributes",
                                             {{GL_COMPUTE_SHADER, shader}},
-                                            {{"LAMINA_GRID_BUFFER_STORE", std::to_string(store)}}});
+                                            {{"LAMINA_GRID_BUFFER_STORE", std::to_string(store)},
+                                             {"LAMINA_ATTRIBUTE_COLORS", hasColors ? "1" : "0"}}});
 }
 
 Result<void> AttributeVoxelizer::Impl::initialize() {
-    for (std::size_t store = 0; store < programs.size(); ++store) {
-        auto smallTriangles = program("voxelize/attributes.comp", store);
-        if (!smallTriangles)
-            return smallTriangles.error();
-        auto largeTriangles = program("voxelize/attributes_large.comp", store);
-        if (!largeTriangles)
-            return largeTriangles.error();
-        programs[store] = {*smallTriangles, *largeTriangles};
-    }
+    for (std::size_t store = 0; store < programs.size(); ++store)
+        for (const bool hasColors : {false, true}) {
+            auto smallTriangles = program("voxelize/attributes.comp", store, hasColors);
+            if (!smallTriangles)
+                return smallTriangles.error();
+            auto largeTriangles = program("voxelize/attributes_large.comp", store, hasColors);
+            if (!largeTriangles)
+                return largeTriangles.error();
+            programs[store][hasColors ? 1 : 0] = {*smallTriangles, *largeTriangles};
+        }
     auto resolver = gl::findOrBuildProgram(
         *device,
         {"lamina attribute resolve", {{GL_COMPUTE_SHADER, "voxelize/attribute_resolve.comp"}}, {}});
@@ -173,12 +194,14 @@ void AttributeVoxelizer::Impl::uploadMaterials(std::span<const Material> materia
 }
 
 void AttributeVoxelizer::Impl::uploadBatch(const GridTransform& transform, std::uint64_t firstVoxel,
-                                           std::uint64_t count, std::size_t materialCount) {
+                                           std::uint64_t count, std::size_t materialCount,
+                                           const std::optional<glm::vec4>& color) {
     shared::LaminaAttributeConstants constants{};
     const glm::dmat3 rows = glm::transpose(areaToWorld(transform));
     for (int row = 0; row < 3; ++row)
         constants.areaToWorld[row] = glm::vec4(glm::vec3(rows[row]), 0.0f);
-    constants.batch = {firstVoxel, count, materialCount - 1, 0};
+    constants.batch = {firstVoxel, count, materialCount - 1, color ? 1 : 0};
+    constants.color = color.value_or(glm::vec4(0.0f));
     device->gl.NamedBufferData(batchBlock.id(), sizeof constants, &constants, GL_STREAM_DRAW);
 }
 
@@ -271,16 +294,19 @@ Result<AttributeStats> AttributeVoxelizer::voxelize(std::span<const GeometrySour
     const GLuint batchBlock = impl.batchBlock.id();
     gl.BindTextureUnit(1, result.ranks.texture.id());
     gl.BindSampler(1, 0);
+    const std::optional<glm::vec4> color = commonColor(*prepared, materials);
+    const OverlapPrograms& programs =
+        impl.programs[static_cast<std::size_t>(voxels.store())][color ? 0 : 1];
     AttributeStats stats;
     for (std::uint64_t first = 0; first < count; first += batch) {
         const std::uint64_t size = std::min(batch, count - first);
         impl.beginBatch(result.records, first, size);
-        impl.uploadBatch(transform, first, size, materials.size());
+        impl.uploadBatch(transform, first, size, materials.size(), color);
         gl.BindBuffersBase(GL_UNIFORM_BUFFER, LAMINA_VOLUME_MATERIAL_BLOCK_BINDING, 1,
                            &materialBlock);
         gl.BindBuffersBase(GL_UNIFORM_BUFFER, LAMINA_ATTRIBUTE_BLOCK_BINDING, 1, &batchBlock);
         for (std::size_t part = 0; part < parts.size(); ++part)
-            impl.passes.run(impl.programs[static_cast<std::size_t>(voxels.store())], part);
+            impl.passes.run(programs, part);
         impl.resolve(size);
         gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                          GL_TEXTURE_FETCH_BARRIER_BIT);

@@ -54,8 +54,10 @@ struct LaminaAttributeConstants {
     // Rows of the map from cross products in grid coordinates to those in the world, relative to the
     // largest section of a voxel.
     vec4 areaToWorld[3];
-    // First voxel of the batch by rank, voxels of the batch, greatest material id, unused.
+    // First voxel of the batch by rank, voxels of the batch, greatest material id, 1 if all surfaces have
+    // the colour `color`, which then has no sums.
     uvec4 batch;
+    vec4 color;
 };
 
 #endif
