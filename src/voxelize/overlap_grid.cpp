@@ -48,13 +48,15 @@ bool isOverlapGrid(const GridTransform& transform) {
 Result<std::vector<GridPart>> gridParts(const gl::DeviceState& device,
                                         const GridTransform& transform) {
     if (!isOverlapGrid(transform))
-        return Error{ErrorCode::Unsupported,
-                     "voxelize: overlap expected an orthographic grid with linear slices, found " +
-                         transform.describe() +
-                         (transform.projection() == Projection::Orthographic
-                              ? " with logarithmic or custom slices"
-                              : "") +
-                         "; use Backend::Slicemap with Coverage::Conservative or Coverage::Solid"};
+        return Error{
+            ErrorCode::Unsupported,
+            "voxelize: overlap expected an orthographic grid with linear slices, found " +
+                transform.describe() +
+                (transform.projection() == Projection::Orthographic
+                     ? " with logarithmic or custom slices"
+                     : "") +
+                "; use Backend::Slicemap with Coverage::Conservative, or with Coverage::Solid "
+                "and SolidRule::Parity"};
     const glm::uvec3 size = transform.size();
     if (size.x > maxOverlapColumns(device) || size.y > maxOverlapColumns(device) ||
         size.z > maxOverlapSlices(device))

@@ -89,7 +89,8 @@ bool isByRule(const VoxelizerDesc& desc) {
 /// "solid coverage by rule voted"
 std::string describeCoverage(const VoxelizerDesc& desc) {
     return std::string(name(desc.coverage)) + " coverage" +
-           (isByRule(desc) ? " by rule " + std::string(name(desc.solidRule)) : "");
+           (isByRule(desc) ? " by rule " + std::string(name(desc.solidRule)) : "") +
+           (desc.localRanges ? " with local ranges" : "");
 }
 
 /// What Backend::Automatic takes where there is no choice between grids.

@@ -330,6 +330,15 @@ TEST_F(AttributesContractGlTest, ErrorsSayWhatWasExpected) {
     expectError(voxelizer.voxelize({&source, 1}, {}, perspective, out), ErrorCode::Unsupported,
                 "use VolumeVoxelizer");
 
+    auto uneven = VoxelGrid::create(device()).value();
+    ASSERT_TRUE(uneven.resize(GridTransform::box({{-1, -1, -1}, {1, 1, 1}}, {8, 8, 2}, Axis::Z,
+                                                 SliceDistribution::custom({0, 0.25f, 1}))
+                                  .value()));
+    expectError(voxelizer.voxelize({&source, 1}, {}, uneven, out), ErrorCode::Unsupported,
+                "linear slices, found ");
+    expectError(voxelizer.voxelize({&source, 1}, {}, uneven, out), ErrorCode::Unsupported,
+                "use VolumeVoxelizer");
+
     auto local = VoxelGrid::create(device()).value();
     ASSERT_TRUE(local.resize(testGrid(), VoxelStore::Texture, SliceRanges::Local));
     expectError(voxelizer.voxelize({&source, 1}, {}, local, out), ErrorCode::Unsupported,

@@ -99,6 +99,48 @@ TEST_F(VoxelizerChoiceGlTest, AutomaticPicksByTheGridWhereTwoBackendsServe) {
     }
 }
 
+TEST_F(VoxelizerChoiceGlTest, AutomaticSaysWhatServesRangesRulesAndManySlices) {
+    auto ranges =
+        Voxelizer::create(device(), {.coverage = Coverage::Conservative, .localRanges = true})
+            .value();
+    EXPECT_EQ(ranges->backend(), Backend::MrtSlicemap);
+    EXPECT_THAT(ranges->reason(),
+                HasSubstr("mrt_slicemap serves conservative coverage with local ranges: it "));
+    auto sampled = Voxelizer::create(device()).value();
+    EXPECT_THAT(sampled->reason(), HasSubstr("up to 1024 slices a pass"));
+
+    // No backend has these: the error names the nearest request that can be served, and it is.
+    auto buffers = MeshBuffers::upload(device(), test::makeKnot()).value();
+    const GeometrySource source = buffers.view();
+    auto grid = VoxelGrid::create(device()).value();
+    const Box3 box{{-1, -1, -1}, {1, 1, 1}};
+    GridCamera eye = GridCamera::perspective(glm::dmat4(1), 1, 1, 1, 4);
+    eye.worldToEye = glm::translate(glm::dmat4(1), {0, 0, -2.5});
+    const GridTransform others[] = {
+        GridTransform::camera(eye, {32, 32, 32}).value(),
+        GridTransform::box(box, {32, 32, 2}, Axis::Z, SliceDistribution::custom({0, 0.25f, 1}))
+            .value()};
+    for (const GridTransform& transform : others) {
+        for (const VoxelizerDesc& desc :
+             {VoxelizerDesc{.coverage = Coverage::Separating6},
+              VoxelizerDesc{.coverage = Coverage::Solid, .solidRule = SolidRule::Voted},
+              VoxelizerDesc{.coverage = Coverage::Solid, .solidRule = SolidRule::FloodFill}}) {
+            auto voxelizer = Voxelizer::create(device(), desc).value();
+            const auto refused = voxelizer->voxelize({&source, 1}, transform, grid);
+            ASSERT_FALSE(refused);
+            EXPECT_EQ(refused.error().code, ErrorCode::Unsupported);
+            EXPECT_THAT(refused.error().text,
+                        AllOf(HasSubstr("orthographic grid with linear slices"),
+                              HasSubstr("Coverage::Conservative"),
+                              HasSubstr("Coverage::Solid and SolidRule::Parity")));
+        }
+        for (const Coverage nearest : {Coverage::Conservative, Coverage::Solid}) {
+            auto voxelizer = Voxelizer::create(device(), {Backend::Slicemap, nearest}).value();
+            EXPECT_TRUE(voxelizer->voxelize({&source, 1}, transform, grid));
+        }
+    }
+}
+
 TEST_F(VoxelizerChoiceGlTest, AutomaticSplitsBySlicemaps) {
     auto buffers = MeshBuffers::upload(device(), test::makeKnot()).value();
     const GeometrySource source = buffers.view();
