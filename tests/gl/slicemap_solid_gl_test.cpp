@@ -162,6 +162,34 @@ TEST_F(SlicemapSolidGlTest, OpenMeshesReportOddColumnsLikeTheOverlapBackend) {
         0u);
 }
 
+TEST_F(SlicemapSolidGlTest, ReportsOfOpenMeshesAreTheSameOnAllBackends) {
+    // Triangles taken from closed shapes; a soup, which is open everywhere. Sizes around words.
+    std::vector<NamedMesh> meshes = test::makeShapes();
+    for (NamedMesh& shape : meshes)
+        if (shape.mesh.triangles.size() > 40)
+            std::erase_if(shape.mesh.triangles,
+                          [n = 0](const glm::uvec3&) mutable { return ++n % 13 == 0; });
+    for (const NamedMesh& mesh : test::readRealMeshes({"bunny.ply"}))
+        meshes.push_back(mesh);
+    std::size_t open = 0;
+    for (const NamedMesh& shape : meshes)
+        for (const glm::uvec3 size : {glm::uvec3{50, 33, 31}, glm::uvec3{40, 65, 150}}) {
+            const GridTransform transform = GridTransform::box(shape.mesh.bounds(), size).value();
+            const std::uint64_t expected = oddColumns(shape.mesh, transform);
+            open += expected > 0 ? 1 : 0;
+            const Solid overlap = voxelize(shape.mesh, transform, Backend::Overlap);
+            for (const Backend backend :
+                 {Backend::Overlap, Backend::Slicemap, Backend::MrtSlicemap, Backend::Automatic}) {
+                const Solid solid = voxelize(shape.mesh, transform, backend);
+                EXPECT_EQ(solid.oddColumns, expected)
+                    << shape.name << " by " << name(backend) << " of " << size.z << " slices";
+                EXPECT_TRUE(compare(solid.bits, overlap.bits)->equal())
+                    << shape.name << " by " << name(backend);
+            }
+        }
+    EXPECT_GT(open, 10u);
+}
+
 TEST_F(SlicemapSolidGlTest, ReportsBelongToTheLastCall) {
     auto voxelizer = Voxelizer::create(device(), {Backend::Slicemap, Coverage::Solid}).value();
     EXPECT_THAT(voxelizer->downloadSolidReport().error().text, HasSubstr("voxelize first"));
