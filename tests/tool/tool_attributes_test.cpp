@@ -118,6 +118,33 @@ TEST_F(ToolAttributes, ColoursOfTheMeshAreKeptUnasked) {
     EXPECT_EQ(grey.substr(grey.find("RGBA") + 12, 4), "\xe8\x8d\x52\xff");
 }
 
+TEST_F(ToolAttributes, TheInsideOfSolidsTakesTheNearestColour) {
+    const ToolResult result =
+        runTool({painted, "-r", "16", "--coverage", "solid", "--attributes", "color,normal", "-o",
+                 folder / "a.npy", "-o", folder / "a.vox"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const NpyArray array = readNpyArray(folder / "a.npy");
+    const auto colors = readRows<glm::u8vec4>(folder / "a.color.npy", "'|u1'");
+    const auto normals = readRows<glm::vec3>(folder / "a.normal.npy", "'<f4'");
+    ASSERT_EQ(colors.size(), array.setCount());
+    ASSERT_EQ(normals.size(), array.setCount());
+    // Each of the two boxes is of one colour through and through.
+    std::size_t inner = 0;
+    std::size_t row = 0;
+    for (std::uint32_t k = 0; k < 16; ++k)
+        for (std::uint32_t j = 0; j < 16; ++j)
+            for (std::uint32_t i = 0; i < 16; ++i)
+                if (array.at({i, j, k}) != 0) {
+                    EXPECT_EQ(colors[row],
+                              k < 8 ? glm::u8vec4(255, 0, 0, 255) : glm::u8vec4(0, 0, 255, 255))
+                        << i << ' ' << j << ' ' << k;
+                    inner += normals[row] == glm::vec3(0.0f) ? 1 : 0;
+                    ++row;
+                }
+    // More voxels have no surface in them than have.
+    EXPECT_GT(2 * inner, row);
+}
+
 TEST_F(ToolAttributes, FormatsAndMeshesWithoutAreToldOf) {
     ToolResult result = runTool({painted, "-r", "16", "--attributes", "color,normal", "-o",
                                  folder / "a.binvox", "-o", folder / "a.vox"});

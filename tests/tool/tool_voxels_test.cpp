@@ -408,7 +408,8 @@ TEST(ToolVoxels, CompareSetsEveryMethodBesideTheExactVoxels) {
     std::map<std::pair<std::string, std::string>, nlohmann::json> rows;
     const auto record = nlohmann::json::parse(std::ifstream(stats));
     for (const auto& row : record["comparison"])
-        rows[{row["coverage"], row["backend"]}] = row;
+        if (row.value("solid_rule", "parity") == "parity")
+            rows[{row["coverage"], row["backend"]}] = row;
     EXPECT_GE(rows.size(), 5u);
     for (const auto& [method, row] : rows) {
         SCOPED_TRACE(method.first + " by " + method.second);
@@ -430,6 +431,42 @@ TEST(ToolVoxels, CompareSetsEveryMethodBesideTheExactVoxels) {
     EXPECT_EQ(sampled["set"].get<int>() + sampled["missing"].get<int>(), exact["set"]);
 }
 
+TEST(ToolVoxels, CompareSetsEverySolidRuleBesideTheOneThatFitsTheMesh) {
+    const TemporaryFolder folder;
+    const TriangleMesh ball = reference::makeIcosphere({0, 0, 0}, 1, 3);
+    TriangleMesh open = ball;
+    open.triangles.resize(open.triangles.size() * 7 / 8);
+    for (const bool isClosed : {true, false}) {
+        const std::string mesh = folder / (isClosed ? "ball.ply" : "open.ply");
+        writePly(mesh, isClosed ? ball : open);
+        const ToolResult run = runTool({mesh, "-r", "40", "--compare", "--coverage", "solid",
+                                        "--stats", folder / "stats.json"});
+        ASSERT_EQ(run.exitCode, 0) << run.err;
+        EXPECT_NE(run.out.find("solid voted   overlap"), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find(isClosed ? "centre lies inside, by parity" : "by the voted rule"),
+                  std::string::npos)
+            << run.out;
+        std::map<std::string, nlohmann::json> rules;
+        const auto record = nlohmann::json::parse(std::ifstream(folder / "stats.json"));
+        for (const auto& row : record["comparison"])
+            if (row["backend"] == "overlap")
+                rules[row["solid_rule"]] = row;
+        ASSERT_EQ(rules.size(), 3u);
+        for (const auto& [rule, row] : rules) {
+            SCOPED_TRACE(rule);
+            EXPECT_EQ(row["exact"], isClosed ? "solid parity" : "solid voted");
+            EXPECT_EQ(row["set"], voxelsOf({mesh, "-r", "40", "--coverage", "solid", "--backend",
+                                            "overlap", "--solid-rule", rule},
+                                           folder / "voxels.npy")
+                                      .setCount());
+        }
+        EXPECT_EQ(rules["voted"]["iou"], 1.0);
+        EXPECT_EQ(rules["parity"]["iou"] == 1.0, isClosed);
+        EXPECT_EQ(rules["flood"]["missing"].get<int>() > 0, !isClosed);
+        EXPECT_GT(rules["flood"]["extra"], 0);
+    }
+}
+
 TEST(ToolVoxels, CompareKeepsToTheCoverageAskedFor) {
     const TemporaryFolder folder;
     const std::string mesh = folder / "ball.ply";
@@ -441,6 +478,7 @@ TEST(ToolVoxels, CompareKeepsToTheCoverageAskedFor) {
     ASSERT_FALSE(rows.empty());
     for (const auto& row : rows)
         EXPECT_EQ(row["coverage"], "solid");
+    EXPECT_EQ(runTool({mesh, "--compare", "--solid-rule", "voted"}).exitCode, 2);
     EXPECT_EQ(runTool({mesh, "--compare", "-o", folder / "a.npy"}).exitCode, 2);
 }
 

@@ -208,8 +208,8 @@ void addOtherModes(CLI::App& app, Request& request) {
     info->excludes(app.get_option("--output"))->excludes(app.get_option("--preview"));
     auto* compare =
         app.add_flag("--compare", request.compare,
-                     "Time every backend and coverage (or the one of --coverage) on this mesh and "
-                     "grid, and set their voxels beside the exact ones")
+                     "Time every backend, coverage and solid rule (or the coverage of --coverage) "
+                     "on this mesh and grid, and set their voxels beside the exact ones")
             ->group(group);
     compare->excludes(app.get_option("--output"))
         ->excludes(app.get_option("--preview"))

@@ -1,6 +1,7 @@
 #include "compare.hpp"
 
 #include "choices.hpp"
+#include "device_work.hpp"
 #include "failure.hpp"
 #include "open_device.hpp"
 
@@ -26,14 +27,20 @@ Coverage exactCoverage(Coverage coverage) {
 
 class Comparison {
 public:
-    Comparison(const OpenDevice& open, const MeshBuffers& buffers, const GridTransform& transform)
+    /// exactRule: of the exact solid.
+    Comparison(const OpenDevice& open, const MeshBuffers& buffers, const GridTransform& transform,
+               SolidRule exactRule)
         : mOpen(open)
         , mSources{buffers.view()}
-        , mTransform(transform) {}
+        , mTransform(transform)
+        , mExactRule(exactRule) {}
 
     /// A row of the table; nothing if the backend does not serve the coverage here.
-    [[nodiscard]] std::optional<ComparedMethod> measure(Backend backend, Coverage coverage) {
-        auto created = Voxelizer::create(mOpen.device, {.backend = backend, .coverage = coverage});
+    /// rule: of Coverage::Solid.
+    [[nodiscard]] std::optional<ComparedMethod> measure(Backend backend, Coverage coverage,
+                                                        SolidRule rule) {
+        auto created = Voxelizer::create(
+            mOpen.device, {.backend = backend, .coverage = coverage, .solidRule = rule});
         if (!created && created.error().code == ErrorCode::Unsupported)
             return std::nullopt;
         const auto voxelizer = require(std::move(created));
@@ -54,7 +61,11 @@ public:
                                  times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2));
 
         const BitGrid bits = downloadUniform(grid);
+        const bool isSolid = coverage == Coverage::Solid;
         return ComparedMethod{std::string(name(coverage)),
+                              isSolid ? std::string(wordOf(kSolidRules, rule)) : std::string(),
+                              isSolid ? "solid " + std::string(wordOf(kSolidRules, mExactRule))
+                                      : std::string(name(Coverage::Conservative)),
                               std::string(name(backend)),
                               times[times.size() / 2],
                               mStats.passes,
@@ -64,13 +75,15 @@ public:
     }
 
 private:
-    /// The exact set: triangle/voxel overlap, or crossings, decided by the overlap backend.
+    /// The exact set: triangle/voxel overlap, or crossings, decided by the overlap backend. Rays
+    /// vote where no parity is exact, which is as near as can be had then.
     const BitGrid& exact(Coverage coverage) {
         auto found = mExact.find(coverage);
         if (found == mExact.end()) {
             VoxelGrid grid = require(VoxelGrid::create(mOpen.device));
             const auto voxelizer = require(Voxelizer::create(
-                mOpen.device, {.backend = Backend::Overlap, .coverage = coverage}));
+                mOpen.device,
+                {.backend = Backend::Overlap, .coverage = coverage, .solidRule = mExactRule}));
             (void)require(voxelizer->voxelize(mSources, mTransform, grid));
             found = mExact.emplace(coverage, require(grid.download())).first;
         }
@@ -80,6 +93,7 @@ private:
     const OpenDevice& mOpen;
     std::array<GeometrySource, 1> mSources;
     GridTransform mTransform;
+    SolidRule mExactRule;
     VoxelizeStats mStats;
     std::map<Coverage, BitGrid> mExact;
 };
@@ -95,17 +109,24 @@ void compareOnDevice(const Request& request, const TriangleMesh& mesh, StageCloc
     const MeshBuffers buffers = clock.run("upload", "uploading the mesh", [&] {
         return require(MeshBuffers::upload(open.device, mesh));
     });
-    Comparison comparison(open, buffers, transform);
+    Comparison comparison(open, buffers, transform, fittingSolidRule(record.mesh));
+    const auto measure = [&](const auto& coverage, const auto& backend, SolidRule rule) {
+        auto method =
+            clock.run("compare", fmt::format("{} by {}", coverage.word, backend.word),
+                      [&] { return comparison.measure(backend.value, coverage.value, rule); });
+        if (method)
+            record.comparison.push_back(std::move(*method));
+    };
     for (const auto& coverage : kCoverages)
         for (const auto& backend : kBackends) {
             if (backend.value == Backend::Automatic ||
                 request.comparedCoverage.value_or(coverage.value) != coverage.value)
                 continue;
-            auto method =
-                clock.run("compare", fmt::format("{} by {}", coverage.word, backend.word),
-                          [&] { return comparison.measure(backend.value, coverage.value); });
-            if (method)
-                record.comparison.push_back(std::move(*method));
+            measure(coverage, backend, SolidRule::Parity);
+            if (coverage.value != Coverage::Solid)
+                continue;
+            measure(coverage, backend, SolidRule::Voted);
+            measure(coverage, backend, SolidRule::FloodFill);
         }
 }
 

@@ -8,8 +8,9 @@
 namespace lamina::tool {
 
 /// Voxelizes the mesh with every backend and coverage that the device serves (or the coverage that
-/// the request names), each several times, and sets the results beside the exact sets. Fills
-/// renderer and comparison of `record`, whose grid is planned. Throws Failure.
+/// the request names), solids by every rule, each several times, and sets the results beside the
+/// exact sets. Fills renderer and comparison of `record`, whose grid is planned and whose mesh is
+/// inspected. Throws Failure.
 void compareOnDevice(const Request& request, const TriangleMesh& mesh, StageClock& clock,
                      RunRecord& record);
 

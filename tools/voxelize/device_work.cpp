@@ -12,13 +12,12 @@
 namespace lamina::tool {
 namespace {
 
-/// The rule that the command line names; else the fastest that fits the mesh: parity is exact if
-/// inside and outside are defined and parts cannot overlap. Other backends than overlap know no
-/// other.
+/// The rule that the command line names, else the one that fits the mesh. Other backends than
+/// overlap know none but parity.
 SolidRule chooseSolidRule(const Request& request, const MeshFacts& mesh) {
     if (request.solidRule)
         return *request.solidRule;
-    const bool isPlain = mesh.report && mesh.report->watertight() && mesh.report->components == 1;
+    const bool isPlain = fittingSolidRule(mesh) == SolidRule::Parity;
     const bool canVote =
         request.backend == Backend::Automatic || request.backend == Backend::Overlap;
     return isPlain || !canVote ? SolidRule::Parity : SolidRule::Voted;
@@ -46,6 +45,11 @@ AttributeGrid recordAttributes(const OpenDevice& open, const MeshBuffers& mesh,
 }
 
 } // namespace
+
+SolidRule fittingSolidRule(const MeshFacts& mesh) {
+    const bool isPlain = mesh.report && mesh.report->watertight() && mesh.report->components == 1;
+    return isPlain ? SolidRule::Parity : SolidRule::Voted;
+}
 
 Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted, TriangleMesh mesh,
                         StageClock& clock, RunRecord& record) {
@@ -98,6 +102,11 @@ Voxels voxelizeOnDevice(const Request& request, const AttributeRequest& wanted, 
     record.voxels->hasColors = wanted.color;
     record.voxels->hasNormals = wanted.normal;
     AttributeGrid attributes = recordAttributes(open, buffers, grid, wanted, clock);
+    if (request.coverage == Coverage::Solid && wanted.color)
+        clock.run("attributes", "colouring the inside", [&] {
+            require(spreadColors(bits, attributes));
+            attributes.hits = {}; // Files are without what is known to have none.
+        });
     return {std::move(bits), std::move(attributes)};
 }
 

@@ -17,6 +17,10 @@ struct Voxels {
     std::optional<AttributeGrid> attributes;
 };
 
+/// The fastest rule that fits the mesh, whose report is known: parity is exact if inside and
+/// outside are defined and parts cannot overlap.
+[[nodiscard]] SolidRule fittingSolidRule(const MeshFacts& mesh);
+
 /// Makes a context, voxelizes the mesh (given up as soon as the device has it) and brings the
 /// voxels back; all device memory is free again after it. Fills renderer and voxels of `record`,
 /// whose grid is planned. Throws Failure.

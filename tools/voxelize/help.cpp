@@ -65,6 +65,8 @@ Attributes:
   and "normal", .vti as cell arrays, .vox has colours in a palette of 255, .binvox has none. NAME.npy
   gets NAME.color.npy (N x 4, uint8) and NAME.normal.npy (N x 3, float32) beside it, a row for each
   set voxel: full[a != 0] = rows; auto makes none of these. Pictures show colours.
+  Inside solids there is no surface: those voxels take the colour of the nearest voxel that has one,
+  so that a model cut open in an editor is coloured all through; their normals are zero.
 
 Files:
   All are checked before work starts, and appear whole or not at all. Progress and a summary are

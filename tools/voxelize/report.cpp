@@ -75,15 +75,19 @@ double percentOfExact(const ComparedMethod& method, std::uint64_t voxels) {
 }
 
 Json toJson(const ComparedMethod& method) {
-    return {{"coverage", method.coverage},
-            {"backend", method.backend},
-            {"milliseconds", rounded(method.milliseconds)},
-            {"passes", method.passes},
-            {"grid_bytes", method.deviceBytes},
-            {"set", method.set},
-            {"iou", method.againstExact.iou()},
-            {"missing", method.againstExact.onlyFirst},
-            {"extra", method.againstExact.onlySecond}};
+    Json json = {{"coverage", method.coverage},
+                 {"backend", method.backend},
+                 {"milliseconds", rounded(method.milliseconds)},
+                 {"passes", method.passes},
+                 {"grid_bytes", method.deviceBytes},
+                 {"set", method.set},
+                 {"exact", method.exact},
+                 {"iou", method.againstExact.iou()},
+                 {"missing", method.againstExact.onlyFirst},
+                 {"extra", method.againstExact.onlySecond}};
+    if (!method.solidRule.empty())
+        json["solid_rule"] = method.solidRule;
+    return json;
 }
 
 Json toJson(const SolidFacts& solid) {
@@ -199,18 +203,30 @@ std::string comparisonTable(const RunRecord& record) {
                     record.mesh.file.string(), record.mesh.triangles, gridText(*record.grid),
                     record.renderer->context.renderer, "coverage", "backend", "ms", "passes",
                     "voxels", "MiB", "IoU", "missing %", "extra %");
-    for (const ComparedMethod& method : record.comparison)
+    std::string exactSolid;
+    for (const ComparedMethod& method : record.comparison) {
+        const bool isSolid = !method.solidRule.empty();
         text += fmt::format(
             "{:<13} {:<15} {:>10.2f} {:>6} {:>12} {:>9.1f} {:>8.5f} {:>10.4f} {:>9.4f}\n",
-            method.coverage, method.backend, method.milliseconds, method.passes, method.set,
+            method.coverage + (isSolid ? " " + method.solidRule : ""), method.backend,
+            method.milliseconds, method.passes, method.set,
             static_cast<double>(method.deviceBytes) / kMebibyte, method.againstExact.iou(),
             percentOfExact(method, method.againstExact.onlyFirst),
             percentOfExact(method, method.againstExact.onlySecond));
-    return text +
-           "\nms: median of up to 7 voxelizations, until the GPU is done, without upload and "
-           "read-back.\nIoU, missing, extra: against the exact set of all voxels that a triangle "
-           "touches, or, for\nsolid, of all voxels whose centre lies inside. Sampled, filled and "
-           "separating6 are thinner by\ndefinition.\n";
+        if (isSolid)
+            exactSolid = method.exact;
+    }
+    text += "\nms: median of up to 7 voxelizations, until the GPU is done, without upload and "
+            "read-back.\nIoU, missing, extra: against the exact set of all voxels that a triangle "
+            "touches. Sampled, filled\nand separating6 are thinner by definition.\n";
+    if (!exactSolid.empty())
+        text += exactSolid == "solid parity"
+                    ? "Solids: against all voxels whose centre lies inside, by parity. Flood adds "
+                      "the surface's voxels\nby definition.\n"
+                    : "Solids: against those by the voted rule: the mesh is not watertight or has "
+                      "several parts, for which\nparity is not exact. Flood adds the surface's "
+                      "voxels by definition.\n";
+    return text;
 }
 
 std::string meshDescription(const RunRecord& record) {

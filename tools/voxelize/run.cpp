@@ -206,7 +206,7 @@ void run(const Request& request) {
     checkOutputs(request);
     TriangleMesh mesh = loadMesh(request.mesh, clock, record);
     const bool needsRule = request.coverage == Coverage::Solid && !request.solidRule;
-    if (request.infoOnly || request.stats || needsRule)
+    if (request.infoOnly || request.stats || request.compare || needsRule)
         record.mesh.report =
             clock.run("inspect", "inspecting the mesh", [&] { return require(inspect(mesh)); });
     record.grid = planGrid(request.grid, mesh);

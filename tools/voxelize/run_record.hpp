@@ -54,6 +54,8 @@ struct VoxelFacts {
 /// A row of --compare.
 struct ComparedMethod {
     std::string coverage;
+    std::string solidRule; ///< Empty for other coverages.
+    std::string exact;     ///< What it is measured against: a coverage, and a rule.
     std::string backend;
     double milliseconds = 0.0; ///< Median, until the GPU is done.
     std::uint32_t passes = 0;
