@@ -208,7 +208,7 @@ public:
     /// capabilities().slicesPerPass slices; a clear of the grid.
     /// SolidRule::Voted: closed, consistently oriented meshes without overlaps take one pass
     /// and 1.2 to 1.5 times the work of Parity; with overlaps two passes and 3 to 6 times the work;
-    /// others 20 to 50 times, more the larger the grid: four passes and, where rays disagree, four
+    /// others 15 to 45 times, more the larger the grid: four passes and, where rays disagree, four
     /// more. The device finds out which: VoxelizeStats::passes counts all. Four times the grid's
     /// memory and up to 512 MiB more, kept for the next call. FloodFill: as Conservative, then some
     /// sweeps over the grid; twice its memory.
