@@ -19,7 +19,6 @@ namespace {
 
 constexpr const char* kOperation = "area light imperfect maps";
 constexpr std::uint32_t kPointsPerGroup = 64;
-constexpr std::uint32_t kFillGroup = 8;
 
 /// Where a light's map looks: the rows that splats read, and the same for rectification.
 struct MapFrame {
@@ -74,46 +73,33 @@ MapFrame slab(const VirtualLight& light, const EpipolarTransform& transform) {
 } // namespace
 
 ImperfectMapMaker::ImperfectMapMaker(std::shared_ptr<gl::DeviceState> device,
-                                     const AreaLightDesc& desc, PointSamples samples)
+                                     const AreaLightDesc& desc, PointSamples samples,
+                                     HoleFiller filler)
     : mDevice(std::move(device))
     , mDesc(desc)
     , mSamples(std::move(samples))
+    , mFiller(std::move(filler))
     , mConstants(gl::Buffer::create(mDevice, "lamina splat pass"))
-    , mFrames(gl::Buffer::create(mDevice, "lamina imperfect maps")) {
-    mLevels.push_back({mDesc.mapTexels, glm::uvec2(0)});
-    std::uint32_t row = 0;
-    for (std::uint32_t i = 0; i < mDesc.imperfect.holeLevels && mLevels.back().side > 1; ++i) {
-        const std::uint32_t side = (mLevels.back().side + 1) / 2;
-        mLevels.push_back({side, {mDesc.mapTexels, row}});
-        row += side;
-    }
-}
+    , mFrames(gl::Buffer::create(mDevice, "lamina imperfect maps")) {}
 
 Result<ImperfectMapMaker> ImperfectMapMaker::create(std::shared_ptr<gl::DeviceState> device,
                                                     const AreaLightDesc& desc) {
     auto samples = PointSamples::create(device, desc.imperfect.points);
     if (!samples)
         return samples.error();
-    ImperfectMapMaker made(std::move(device), desc, std::move(*samples));
-    struct Wanted {
-        const char* shader;
-        const char* define;
-        const char* value;
-        GLuint* program;
-    };
-    const Wanted wanted[] = {
-        {"area_light/splat.comp", "LAMINA_SPLAT_DIRECTIONAL", "0", &made.mSplatPrograms[0]},
-        {"area_light/splat.comp", "LAMINA_SPLAT_DIRECTIONAL", "1", &made.mSplatPrograms[1]},
-        {"area_light/fill_holes.comp", "LAMINA_FILL_PUSH", "0", &made.mPullProgram},
-        {"area_light/fill_holes.comp", "LAMINA_FILL_PUSH", "1", &made.mPushProgram}};
-    for (const Wanted& want : wanted) {
+    auto filler = HoleFiller::create(device, desc.mapTexels, desc.imperfect.holeLevels);
+    if (!filler)
+        return filler.error();
+    ImperfectMapMaker made(std::move(device), desc, std::move(*samples), std::move(*filler));
+    const char* const values[2] = {"0", "1"};
+    for (std::size_t i = 0; i < 2; ++i) {
         const auto built =
             gl::findOrBuildProgram(*made.mDevice, {"lamina imperfect maps",
-                                                   {{GL_COMPUTE_SHADER, want.shader}},
-                                                   {{want.define, want.value}}});
+                                                   {{GL_COMPUTE_SHADER, "area_light/splat.comp"}},
+                                                   {{"LAMINA_SPLAT_DIRECTIONAL", values[i]}}});
         if (!built)
             return built.error();
-        *want.program = *built;
+        made.mSplatPrograms[i] = *built;
     }
     return made;
 }
@@ -129,12 +115,8 @@ bool ImperfectMapMaker::canServe(std::span<const VirtualLight> lights) {
 Result<void> ImperfectMapMaker::reserve(std::uint32_t maps) {
     if (maps <= mLayers)
         return {};
-    const std::uint32_t side = mDesc.mapTexels;
-    const std::uint32_t width = side + (mLevels.size() > 1 ? mLevels[1].side : 0);
-    std::uint32_t height = side;
-    for (const Level& level : mLevels)
-        height = std::max(height, level.first.y + level.side);
-    auto made = gl::createTextureArray(mDevice, GL_R32F, 4, width, height, maps, kOperation,
+    const glm::uvec2 size = mFiller.layerSize();
+    auto made = gl::createTextureArray(mDevice, GL_R32F, 4, size.x, size.y, maps, kOperation,
                                        "lamina imperfect maps");
     if (!made)
         return made.error();
@@ -143,10 +125,13 @@ Result<void> ImperfectMapMaker::reserve(std::uint32_t maps) {
     return {};
 }
 
-void ImperfectMapMaker::clear() {
+void ImperfectMapMaker::clear(std::uint32_t maps) {
     const float empty = std::bit_cast<float>(LAMINA_SPLAT_EMPTY);
     const gl::PixelUnpackGuard unpack(*mDevice);
-    mDevice->gl.ClearTexImage(mMaps.id(), 0, GL_RED, GL_FLOAT, &empty);
+    // The pyramid beside the maps is written before it is read.
+    const auto side = static_cast<GLsizei>(mDesc.mapTexels);
+    mDevice->gl.ClearTexSubImage(mMaps.id(), 0, 0, 0, 0, side, side, static_cast<GLsizei>(maps),
+                                 GL_RED, GL_FLOAT, &empty);
 }
 
 void ImperfectMapMaker::splat(std::uint32_t maps, bool isDirectional) {
@@ -170,30 +155,6 @@ void ImperfectMapMaker::splat(std::uint32_t maps, bool isDirectional) {
     gl.UseProgram(mSplatPrograms[isDirectional ? 1 : 0]);
     gl.DispatchCompute((perMap + kPointsPerGroup - 1) / kPointsPerGroup, maps, 1);
     gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-}
-
-void ImperfectMapMaker::fillHoles(std::uint32_t maps) {
-    const gl::DebugGroup group(*mDevice, "lamina: fill holes");
-    const GladGLContext& gl = mDevice->gl;
-    const gl::ComputeStateGuard guard(*mDevice, 1, 0);
-    const gl::ImageUnitGuard images(*mDevice, 1);
-    gl.BindImageTexture(LAMINA_SPLAT_IMAGE, mMaps.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32UI);
-    const auto run = [&](GLuint program, const Level& level, const Level& other) {
-        shared::LaminaSplatConstants constants{};
-        constants.level = {0, level.side, level.first};
-        constants.other = {other.side, other.first, 0};
-        gl.NamedBufferData(mConstants.id(), sizeof constants, &constants, GL_STREAM_DRAW);
-        const GLuint uniforms = mConstants.id();
-        gl.BindBuffersBase(GL_UNIFORM_BUFFER, LAMINA_SPLAT_UNIFORM_BINDING, 1, &uniforms);
-        gl.UseProgram(program);
-        const std::uint32_t groups = (level.side + kFillGroup - 1) / kFillGroup;
-        gl.DispatchCompute(groups, groups, maps);
-        gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-    };
-    for (std::size_t i = 1; i < mLevels.size(); ++i)
-        run(mPullProgram, mLevels[i], mLevels[i - 1]);
-    for (std::size_t i = mLevels.size(); i-- > 1;)
-        run(mPushProgram, mLevels[i - 1], mLevels[i]);
 }
 
 Result<std::vector<LightDepthMap>>
@@ -231,9 +192,9 @@ ImperfectMapMaker::make(std::span<const GeometrySource> sources,
     }
     mDevice->gl.NamedBufferData(mFrames.id(), static_cast<GLsizeiptr>(rows.size() * sizeof rows[0]),
                                 rows.data(), GL_STREAM_DRAW);
-    clear();
+    clear(count);
     splat(count, isDirectional);
-    fillHoles(count);
+    mFiller.fill(mMaps.id(), count);
     return maps;
 }
 

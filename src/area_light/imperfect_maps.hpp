@@ -2,6 +2,7 @@
 
 #include "gl/device_state.hpp"
 
+#include "area_light/hole_filler.hpp"
 #include "area_light/point_samples.hpp"
 
 #include <lamina/area_light/area_light.hpp>
@@ -12,7 +13,9 @@
 namespace lamina {
 
 /// Imperfect shadow maps: point samples splatted into the maps of all virtual lights at once, and
-/// their holes filled ([WD13] 3.1.2). The maps are the layers of one texture.
+/// their holes filled ([WD13] 3.1.2). The maps are the layers of one texture, not the tiles of one
+/// layer as in the paper: all are written by one dispatch alike, maps of any size and number fit
+/// the device's limits, and no disk can reach across a map's edge into its neighbour.
 class LAMINA_API ImperfectMapMaker {
 public:
     /// Errors: ShaderError.
@@ -32,27 +35,20 @@ public:
 
 private:
     ImperfectMapMaker(std::shared_ptr<gl::DeviceState> device, const AreaLightDesc& desc,
-                      PointSamples samples);
+                      PointSamples samples, HoleFiller filler);
     [[nodiscard]] Result<void> reserve(std::uint32_t maps);
-    void clear();
+    void clear(std::uint32_t maps);
     void splat(std::uint32_t maps, bool isDirectional);
-    void fillHoles(std::uint32_t maps);
 
     std::shared_ptr<gl::DeviceState> mDevice;
     AreaLightDesc mDesc;
     PointSamples mSamples;
+    HoleFiller mFiller;
     GLuint mSplatPrograms[2] = {}; ///< Of hemispheres, of directional lights.
-    GLuint mPullProgram = 0, mPushProgram = 0;
     gl::Buffer mConstants;
     gl::Buffer mFrames;
     gl::Texture mMaps;
     std::uint32_t mLayers = 0;
-    /// A level of the pyramid beside the maps.
-    struct Level {
-        std::uint32_t side = 0;
-        glm::uvec2 first{0};
-    };
-    std::vector<Level> mLevels;
 };
 
 } // namespace lamina

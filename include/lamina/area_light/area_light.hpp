@@ -23,7 +23,10 @@ namespace lamina {
 enum class ShadowMaps : std::uint8_t {
     Automatic, ///< Imperfect for more than 16 virtual lights.
     Rendered,  ///< The geometry is drawn for each.
-    Imperfect, ///< Point samples of the geometry are splatted for all at once ([WD13] 3.1.2).
+    /// Point samples of the geometry are splatted for all at once ([WD13] 3.1.2), each map a layer
+    /// of one texture. Maps cover the half-space that an emitter shines into; for lights that shine
+    /// alike in all directions (point and spot lights) maps are rendered instead.
+    Imperfect,
 };
 
 /// How shadow volumes are made.
