@@ -66,7 +66,11 @@ LaminaAirlightRay laminaAirlightRay(float extinction, float anisotropy, vec3 axi
     }
     float offset = lightDistance * ray.sinAlpha;
     ray.attenuation = extinction * offset;
-    ray.factor = exp(-extinction * lightDistance * ray.cosAlpha) / max(offset, radius) *
+    // A light behind the eye or beyond the point is not near the ray, although near its line.
+    float reached = lightDistance * ray.cosAlpha;
+    float nearest = length(vec2(offset, reached - clamp(reached, 0.0, distance)));
+    float bound = nearest < radius ? nearest / radius : 1.0;
+    ray.factor = exp(-extinction * lightDistance * ray.cosAlpha) * bound / offset *
                  (1.0 - anisotropy * anisotropy) / (4.0 * kLaminaPi);
     ray.range = vec2(0.0, atan(distance * ray.sinAlpha, lightDistance - along));
     if (isLambertian != 0.0) {
