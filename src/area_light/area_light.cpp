@@ -105,6 +105,12 @@ struct AreaLight::Impl {
     [[nodiscard]] bool usesImperfectMaps(const Plan& plan) const;
     [[nodiscard]] Result<AreaLightStats> prepare(Plan plan, const LightSource& light,
                                                  const Medium& medium, Sources sources);
+    /// Grids that a plan's volumes take.
+    [[nodiscard]] std::size_t gridCount(const Plan& plan) const {
+        return desc.layout == VolumeLayout::Separate ? plan.transforms.size() : 1;
+    }
+    [[nodiscard]] Result<std::vector<LightDepthMap>>
+    makeImperfectMaps(const Plan& plan, std::span<const GeometrySource> sources);
     [[nodiscard]] Result<void> makeVolumes(const Plan& plan, const Sources& sources,
                                            AreaLightStats& stats);
     [[nodiscard]] Result<std::uint32_t> apply(const View& view, const SurfaceTextures& surfaces,
@@ -154,8 +160,7 @@ bool AreaLight::Impl::usesImperfectMaps(const Plan& plan) const {
 Result<void> AreaLight::Impl::makeVolumes(const Plan& plan, const Sources& sources,
                                           AreaLightStats& stats) {
     const std::span<const EpipolarTransform> transforms = plan.transforms;
-    const std::size_t gridCount = desc.layout == VolumeLayout::Separate ? transforms.size() : 1;
-    const std::size_t perGrid = transforms.size() / gridCount;
+    const std::size_t perGrid = transforms.size() / gridCount(plan);
     const auto rectify = [&](std::size_t grid) {
         const auto own = transforms.subspan(grid * perGrid, perGrid);
         if (const auto* hostMaps = std::get_if<std::span<const LightDepthMap>>(&sources))
@@ -165,41 +170,57 @@ Result<void> AreaLight::Impl::makeVolumes(const Plan& plan, const Sources& sourc
     };
     {
         const StageTimers::Scope scope(timers, AreaLightStage::Voxelize);
-        for (std::size_t i = 0; i < gridCount; ++i) {
+        for (std::size_t i = 0; i < gridCount(plan); ++i) {
             const auto done = rectify(i);
             if (!done)
                 return done.error();
+            // From here on the volumes of the last frame are being replaced.
+            current = Plan{};
             stats.shadowMaps += done->depthMaps;
             stats.volumeBytes += done->gridBytes;
             stats.mapBytes = std::max(stats.mapBytes, done->depthBytes);
         }
     }
     const StageTimers::Scope scope(timers, AreaLightStage::Scan);
-    for (std::size_t i = 0; i < gridCount; ++i)
+    for (std::size_t i = 0; i < gridCount(plan); ++i)
         if (auto done = voxelizer.scan(grids[i]); !done)
             return done;
     return {};
 }
 
+Result<std::vector<LightDepthMap>>
+AreaLight::Impl::makeImperfectMaps(const Plan& plan, std::span<const GeometrySource> sources) {
+    const auto count = static_cast<std::uint32_t>(plan.lights.size());
+    if (auto ready = maps.prepare(sources, count); !ready)
+        return ready.error();
+    // Room for the volumes, too, before any work. Those of the last frame are lost to it only where
+    // it takes other memory.
+    const std::span<const EpipolarTransform> transforms = plan.transforms;
+    const std::size_t perGrid = transforms.size() / gridCount(plan);
+    for (std::size_t i = 0; i < gridCount(plan); ++i) {
+        if (grids[i].transforms().size() >= perGrid)
+            continue;
+        if (auto room = grids[i].resize(transforms.subspan(i * perGrid, perGrid)); !room)
+            return room.error();
+        current = Plan{};
+    }
+    const StageTimers::Scope scope(timers, AreaLightStage::Maps);
+    return maps.make(sources, plan.lights, plan.transforms);
+}
+
 Result<AreaLightStats> AreaLight::Impl::prepare(Plan plan, const LightSource& light,
                                                 const Medium& medium, Sources sources) {
     const gl::DebugGroup group(*device, "lamina: prepare area light");
+    if (auto sound = lights.check(textureOf(light)); !sound)
+        return sound.error();
     timers.beginFrame();
-    {
-        const StageTimers::Scope scope(timers, AreaLightStage::Lights);
-        if (auto done = lights.upload(plan.lights, medium, desc, textureOf(light)); !done)
-            return done.error();
-    }
     AreaLightStats stats;
     stats.virtualLights = static_cast<std::uint32_t>(plan.lights.size());
-    // From here on the volumes of the last frame are being replaced.
-    current = Plan{};
     std::vector<LightDepthMap> imperfect;
     const auto* geometry = std::get_if<std::span<const GeometrySource>>(&sources);
     const bool isImperfect = geometry && usesImperfectMaps(plan);
     if (isImperfect) {
-        const StageTimers::Scope scope(timers, AreaLightStage::Maps);
-        auto made = maps.make(*geometry, plan.lights, plan.transforms);
+        auto made = makeImperfectMaps(plan, *geometry);
         if (!made)
             return made.error();
         imperfect = std::move(*made);
@@ -207,6 +228,10 @@ Result<AreaLightStats> AreaLight::Impl::prepare(Plan plan, const LightSource& li
     }
     if (auto done = makeVolumes(plan, sources, stats); !done)
         return done.error();
+    {
+        const StageTimers::Scope scope(timers, AreaLightStage::Lights);
+        lights.upload(plan.lights, medium, desc, textureOf(light));
+    }
     if (isImperfect) {
         stats.shadowMaps = stats.virtualLights;
         stats.mapBytes = maps.bytes();
@@ -229,11 +254,9 @@ Result<std::uint32_t> AreaLight::Impl::apply(const View& view, const SurfaceText
     if (eye->w == 0.0 || glm::distance(glm::dvec3(*eye), prepared) > kTolerance * scale)
         return invalid("apply: expected a view from the viewpoint of prepare(), found another; "
                        "prepare the volumes for each viewpoint");
-    const std::size_t gridCount =
-        desc.layout == VolumeLayout::Separate ? current.transforms.size() : 1;
     const LightGather::Frame frame{view,
                                    surfaces,
-                                   {grids.data(), gridCount},
+                                   {grids.data(), gridCount(current)},
                                    lights.id(),
                                    static_cast<std::uint32_t>(current.lights.size()),
                                    current.skyDistance};
@@ -334,7 +357,8 @@ std::array<std::uint32_t, 2> AreaLight::sums() const {
     return mImpl->gather->sums();
 }
 std::uint64_t AreaLight::gpuBytes() const {
-    std::uint64_t bytes = mImpl->gather->bytes() + mImpl->maps.bytes();
+    std::uint64_t bytes =
+        mImpl->gather->bytes() + mImpl->maps.bytes() + mImpl->voxelizer.gpuBytes();
     for (const EpipolarGrid& grid : mImpl->grids)
         bytes += grid.gpuBytes();
     return bytes;

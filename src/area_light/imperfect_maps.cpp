@@ -157,13 +157,18 @@ void ImperfectMapMaker::splat(std::uint32_t maps, bool isDirectional) {
     gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
+Result<void> ImperfectMapMaker::prepare(std::span<const GeometrySource> sources,
+                                        std::uint32_t maps) {
+    if (auto room = reserve(maps); !room)
+        return room;
+    return mSamples.prepare(sources);
+}
+
 Result<std::vector<LightDepthMap>>
 ImperfectMapMaker::make(std::span<const GeometrySource> sources,
                         std::span<const VirtualLight> lights,
                         std::span<const EpipolarTransform> transforms) {
     const auto count = static_cast<std::uint32_t>(lights.size());
-    if (auto room = reserve(count); !room)
-        return room.error();
     const bool isDirectional = lights.front().light.kind == LightKind::Directional;
     glm::dvec3 middle(0.0);
     for (const VirtualLight& light : lights)

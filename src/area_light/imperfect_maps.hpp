@@ -25,8 +25,11 @@ public:
     /// Can imperfect maps serve these lights? Lambertian and directional ones, all of one kind.
     [[nodiscard]] static bool canServe(std::span<const VirtualLight> lights);
 
-    /// A map a light, for EpipolarVoxelizer; valid until the next call.
-    /// transforms: of the lights' volumes. Errors: those of PointSamples::draw(), DeviceLimit.
+    /// Checks the sources and makes room for this many maps, before any work.
+    /// Errors: those of PointSamples::prepare(), DeviceLimit.
+    [[nodiscard]] Result<void> prepare(std::span<const GeometrySource> sources, std::uint32_t maps);
+    /// A map a light, for EpipolarVoxelizer; valid until the next call. After prepare() for them.
+    /// transforms: of the lights' volumes. Errors: those of PointSamples::draw().
     [[nodiscard]] Result<std::vector<LightDepthMap>>
     make(std::span<const GeometrySource> sources, std::span<const VirtualLight> lights,
          std::span<const EpipolarTransform> transforms);

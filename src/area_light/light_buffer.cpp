@@ -40,17 +40,27 @@ Result<LightBuffer> LightBuffer::create(std::shared_ptr<gl::DeviceState> device)
     return LightBuffer(std::move(device), *program);
 }
 
-Result<void> LightBuffer::upload(std::span<const VirtualLight> lights, const Medium& medium,
-                                 const AreaLightDesc& desc, GLuint texture) {
-    if (texture != 0) {
-        GLint target = 0;
-        if (mDevice->gl.IsTexture(texture))
-            mDevice->gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-        if (target != GL_TEXTURE_2D)
-            return Error{ErrorCode::InvalidArgument,
-                         "area light: expected a 2D texture as the light's emission, found " +
-                             std::to_string(texture)};
+Result<void> LightBuffer::check(GLuint texture) const {
+    if (texture == 0)
+        return {};
+    const GladGLContext& gl = mDevice->gl;
+    GLint target = 0;
+    GLint width = 0;
+    if (gl.IsTexture(texture)) {
+        gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
+        if (target == GL_TEXTURE_2D)
+            gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &width);
     }
+    if (width == 0)
+        return Error{ErrorCode::InvalidArgument,
+                     "area light: expected a 2D texture with storage as the light's emission, "
+                     "found texture " +
+                         std::to_string(texture)};
+    return {};
+}
+
+void LightBuffer::upload(std::span<const VirtualLight> lights, const Medium& medium,
+                         const AreaLightDesc& desc, GLuint texture) {
     shared::LaminaAreaLightConstants head{};
     head.medium = glm::vec4(medium.albedo * medium.extinction, medium.extinction);
     head.phase = {medium.anisotropy, 0.0f, 0.0f, 0.0f};
@@ -70,7 +80,6 @@ Result<void> LightBuffer::upload(std::span<const VirtualLight> lights, const Med
                                 GL_STREAM_DRAW);
     if (texture != 0)
         tint(lights, texture);
-    return {};
 }
 
 void LightBuffer::tint(std::span<const VirtualLight> lights, GLuint texture) {

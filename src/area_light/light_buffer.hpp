@@ -14,10 +14,11 @@ public:
     /// Errors: ShaderError.
     [[nodiscard]] static Result<LightBuffer> create(std::shared_ptr<gl::DeviceState> device);
 
-    /// Lights, medium and query settings of a frame. texture: of the light source; 0: none.
-    /// Errors: InvalidArgument (a texture that is no 2D texture).
-    [[nodiscard]] Result<void> upload(std::span<const VirtualLight> lights, const Medium& medium,
-                                      const AreaLightDesc& desc, GLuint texture);
+    /// texture: of a light source; 0: none. Errors: InvalidArgument (it is no 2D texture).
+    [[nodiscard]] Result<void> check(GLuint texture) const;
+    /// Lights, medium and query settings of a frame. texture: sound.
+    void upload(std::span<const VirtualLight> lights, const Medium& medium,
+                const AreaLightDesc& desc, GLuint texture);
 
     [[nodiscard]] GLuint id() const { return mLights.id(); }
 

@@ -41,6 +41,7 @@ LightGather::LightGather(std::shared_ptr<gl::DeviceState> device, const AreaLigh
     : mDevice(std::move(device))
     , mDesc(desc)
     , mScreen(mDevice, "lamina area light")
+    , mProbe(gl::Framebuffer::create(mDevice, "lamina area light probe"))
     , mSampler(mDevice)
     , mView(gl::Buffer::create(mDevice, "lamina area light view"))
     , mConstants(gl::Buffer::create(mDevice, "lamina area light gather")) {}
@@ -98,33 +99,63 @@ Result<void> LightGather::reserve(const glm::uvec2& view, bool needsPicture) {
     return {};
 }
 
-Result<void> LightGather::check(const Frame& frame) const {
-    if (auto step = gl::depthStep(*mDevice, frame.surfaces.depth, frame.view.size, kOperation);
-        !step)
-        return step.error();
-    const std::pair<const char*, GLuint> others[] = {{"normal", frame.surfaces.normal},
-                                                     {"albedo", frame.surfaces.albedo},
-                                                     {"color", frame.surfaces.color}};
+Result<void> LightGather::checkTexture(GLuint texture, const glm::uvec2& view, const char* what,
+                                       bool isDrawnTo) const {
     const GladGLContext& gl = mDevice->gl;
-    for (const auto& [what, texture] : others) {
-        if (texture == 0)
-            continue;
-        GLint target = 0;
-        glm::ivec2 size(0);
-        if (gl.IsTexture(texture)) {
-            gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-            gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &size.x);
-            gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &size.y);
-        }
-        if (target != GL_TEXTURE_2D || glm::uvec2(size) != frame.view.size)
-            return Error{ErrorCode::InvalidArgument,
-                         std::string(kOperation) + ": expected a 2D texture of " +
-                             std::to_string(frame.view.size.x) + " x " +
-                             std::to_string(frame.view.size.y) + " texels as " + what +
-                             ", found texture " + std::to_string(texture) + " of " +
-                             std::to_string(size.x) + " x " + std::to_string(size.y)};
-    }
+    GLint target = 0;
+    glm::ivec2 size(0);
+    if (gl.IsTexture(texture))
+        gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
+    const bool is2d = target == GL_TEXTURE_2D;
+    const auto level = [&](GLenum name) {
+        GLint value = 0;
+        gl.GetTextureLevelParameteriv(texture, 0, name, &value);
+        return value;
+    };
+    if (is2d)
+        size = {level(GL_TEXTURE_WIDTH), level(GL_TEXTURE_HEIGHT)};
+    const auto error = [&](const std::string& expected, const std::string& found) {
+        return Error{ErrorCode::InvalidArgument,
+                     std::string(kOperation) + ": expected a 2D texture " + expected + " as " +
+                         what + ", found " + found + " as texture " + std::to_string(texture)};
+    };
+    if (!is2d || glm::uvec2(size) != view)
+        return error("of " + std::to_string(view.x) + " x " + std::to_string(view.y) + " texels",
+                     is2d ? std::to_string(size.x) + " x " + std::to_string(size.y) : "none");
+    const GLint type = level(GL_TEXTURE_RED_TYPE);
+    if (type != GL_FLOAT && type != GL_UNSIGNED_NORMALIZED && type != GL_SIGNED_NORMALIZED)
+        return error("of a float or normalized colour format", "another format");
+    if (!isDrawnTo)
+        return {};
+    // Mesa (22.3) says of every format that it is renderable (GL_FRAMEBUFFER_RENDERABLE).
+    gl.NamedFramebufferTexture(mProbe.id(), GL_COLOR_ATTACHMENT0, texture, 0);
+    const GLenum status = gl.CheckNamedFramebufferStatus(mProbe.id(), GL_DRAW_FRAMEBUFFER);
+    gl.NamedFramebufferTexture(mProbe.id(), GL_COLOR_ATTACHMENT0, 0, 0);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        return error("of a colour-renderable format", "another format");
     return {};
+}
+
+Result<void> LightGather::check(const Frame& frame, GLuint target) const {
+    const SurfaceTextures& surfaces = frame.surfaces;
+    if (auto step = gl::depthStep(*mDevice, surfaces.depth, frame.view.size, kOperation); !step)
+        return step.error();
+    const std::pair<const char*, GLuint> others[] = {
+        {"normal", surfaces.normal}, {"albedo", surfaces.albedo}, {"color", surfaces.color}};
+    for (const auto& [what, texture] : others)
+        if (texture != 0)
+            if (auto sound = checkTexture(texture, frame.view.size, what, false); !sound)
+                return sound;
+    if (target == 0)
+        return {};
+    for (const GLuint read : {surfaces.depth, surfaces.normal, surfaces.albedo, surfaces.color})
+        if (read == target)
+            return Error{ErrorCode::InvalidArgument,
+                         std::string(kOperation) +
+                             ": expected a target that is none of the surfaces' textures, found "
+                             "texture " +
+                             std::to_string(target)};
+    return checkTexture(target, frame.view.size, "target", true);
 }
 
 Result<GLuint> LightGather::run(const Frame& frame, GLuint target, StageTimers& timers) {
@@ -132,7 +163,7 @@ Result<GLuint> LightGather::run(const Frame& frame, GLuint target, StageTimers& 
     const auto view = makeViewConstants(frame.view, kOperation);
     if (!view)
         return view.error();
-    if (auto sound = check(frame); !sound)
+    if (auto sound = check(frame, target); !sound)
         return sound.error();
     if (auto room = reserve(frame.view.size, target == 0); !room)
         return room.error();
@@ -194,8 +225,12 @@ void LightGather::gather(const Frame& frame) {
     gl.BindBuffersBase(GL_SHADER_STORAGE_BUFFER, LAMINA_AREA_LIGHT_PASS_LIGHT_BINDING, 1, &lights);
     gl.UseProgram(mGatherProgram);
 
-    const bool isInterleaved = mDesc.gather == GatherMode::Interleaved;
-    const std::uint32_t subsets = isInterleaved ? 9 : 1;
+    constexpr std::uint32_t kSubsets = 9;
+    // A view without a whole block of pixels, or a subset without a light, would lose light.
+    const bool isInterleaved = mDesc.gather == GatherMode::Interleaved &&
+                               frame.volumes.size() == 1 && frame.lightCount >= kSubsets &&
+                               mSumsSize.x >= 3 && mSumsSize.y >= 3;
+    const std::uint32_t subsets = isInterleaved ? kSubsets : 1;
     const std::uint32_t block = LAMINA_AREA_LIGHT_GATHER_SIZE * (isInterleaved ? 3 : 1);
     const glm::uvec2 groups = (mSumsSize + (block - 1)) / block;
     const auto lightsPerGrid = frame.lightCount / static_cast<std::uint32_t>(frame.volumes.size());

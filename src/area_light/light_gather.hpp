@@ -44,7 +44,9 @@ public:
 private:
     LightGather(std::shared_ptr<gl::DeviceState> device, const AreaLightDesc& desc);
     [[nodiscard]] Result<void> reserve(const glm::uvec2& view, bool needsPicture);
-    [[nodiscard]] Result<void> check(const Frame& frame) const;
+    [[nodiscard]] Result<void> check(const Frame& frame, GLuint target) const;
+    [[nodiscard]] Result<void> checkTexture(GLuint texture, const glm::uvec2& view,
+                                            const char* what, bool isDrawnTo) const;
     void gather(const Frame& frame);
     void composite(const Frame& frame, GLuint target);
     void setConstants(const Frame& frame, const glm::uvec4& lights, bool adds);
@@ -54,6 +56,7 @@ private:
     std::shared_ptr<gl::DeviceState> mDevice;
     AreaLightDesc mDesc;
     gl::ScreenPass mScreen;
+    gl::Framebuffer mProbe; ///< Tells whether a host's target can be drawn to.
     gl::FetchSampler mSampler;
     GLuint mGatherProgram = 0;
     GLuint mCompositeProgram = 0;

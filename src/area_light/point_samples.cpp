@@ -29,6 +29,10 @@ std::uint64_t mostTriangles(const GeometrySource& source, const CapturedTriangle
     return captured.capacity;
 }
 
+std::uint64_t blocksOf(std::uint64_t triangles) {
+    return (triangles + LAMINA_SAMPLE_BLOCK_TRIANGLES - 1) / LAMINA_SAMPLE_BLOCK_TRIANGLES;
+}
+
 } // namespace
 
 PointSamples::PointSamples(std::shared_ptr<gl::DeviceState> device, std::uint32_t points)
@@ -96,12 +100,10 @@ void PointSamples::dispatch(GLuint program, const void* constants, GLuint captur
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-Result<void> PointSamples::draw(std::span<const GeometrySource> sources, const glm::dvec3& middle,
-                                double near) {
-    const gl::DebugGroup group(*mDevice, "lamina: point samples");
+Result<void> PointSamples::prepare(std::span<const GeometrySource> sources) {
     if (auto sound = mCapture.checkHost(); !sound)
         return sound;
-    std::vector<GLuint> programs;
+    mCapturePrograms.clear();
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const auto* view = std::get_if<MeshView>(&sources[i]);
         auto sound = view ? checkMeshView(*mDevice, *view, i, kSource)
@@ -112,28 +114,40 @@ Result<void> PointSamples::draw(std::span<const GeometrySource> sources, const g
             view ? mCapture.meshProgram() : mCapture.program(std::get<DrawSource>(sources[i]));
         if (!program)
             return program.error();
-        programs.push_back(*program);
+        mCapturePrograms.push_back(*program);
     }
+    std::uint64_t blocks = 0;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const auto* view = std::get_if<MeshView>(&sources[i]);
+        const std::uint64_t triangles =
+            view ? triangleCount(*view) : std::get<DrawSource>(sources[i]).maxTriangles;
+        blocks += blocksOf(triangles);
+        if (auto room = mCapture.reserve(i, triangles); !room)
+            return room;
+    }
+    // Nothing to sample: one block without weight.
+    return reserve(std::max<std::uint64_t>(blocks, 1));
+}
 
+Result<void> PointSamples::draw(std::span<const GeometrySource> sources, const glm::dvec3& middle,
+                                double near) {
+    const gl::DebugGroup group(*mDevice, "lamina: point samples");
     std::vector<CapturedTriangles> captured;
     std::uint64_t blocks = 0;
-    const auto blocksOf = [](std::uint64_t triangles) {
-        return (triangles + LAMINA_SAMPLE_BLOCK_TRIANGLES - 1) / LAMINA_SAMPLE_BLOCK_TRIANGLES;
-    };
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const auto* view = std::get_if<MeshView>(&sources[i]);
         if (view && triangleCount(*view) == 0) {
             captured.push_back({});
             continue;
         }
-        auto triangles = view ? mCapture.capture(i, *view, programs[i])
-                              : mCapture.capture(i, std::get<DrawSource>(sources[i]), programs[i]);
+        const GLuint program = mCapturePrograms[i];
+        auto triangles = view ? mCapture.capture(i, *view, program)
+                              : mCapture.capture(i, std::get<DrawSource>(sources[i]), program);
         if (!triangles)
             return triangles.error();
         captured.push_back(*triangles);
         blocks += blocksOf(mostTriangles(sources[i], *triangles));
     }
-    // Nothing to sample: one block without weight.
     if (auto room = reserve(std::max<std::uint64_t>(blocks, 1)); !room)
         return room;
 

@@ -32,6 +32,22 @@ double halton(std::uint32_t index, std::uint32_t base) {
     return value;
 }
 
+/// The strength of a source.
+glm::vec3 strengthOf(const LightSource& source) {
+    return std::visit(
+        [](const auto& light) {
+            if constexpr (requires { light.intensity; })
+                return light.intensity;
+            else if constexpr (requires { light.irradiance; })
+                return light.irradiance;
+            else if constexpr (requires { light.radiance; })
+                return light.radiance;
+            else
+                return light.emission.radiance;
+        },
+        source);
+}
+
 /// Two unit vectors that complete `axis` to a right-handed frame.
 std::array<glm::dvec3, 2> orthogonal(const glm::dvec3& axis) {
     const glm::dvec3 other = std::abs(axis.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
@@ -190,6 +206,11 @@ Result<std::vector<VirtualLight>> sampleVirtualLights(const LightSource& source,
                                                       std::uint32_t count, std::uint32_t offset) {
     if (count == 0)
         return invalid("expected at least one, found a count of 0");
+    const glm::vec3 strength = strengthOf(source);
+    for (int channel = 0; channel < 3; ++channel)
+        if (!(strength[channel] >= 0.0f) || !std::isfinite(strength[channel]))
+            return invalid("expected a finite radiance or intensity of at least 0, found " +
+                           std::to_string(strength[channel]));
     return std::visit(Sampler(count, offset), source);
 }
 

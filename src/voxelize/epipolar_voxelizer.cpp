@@ -272,6 +272,10 @@ Result<EpipolarStats> EpipolarVoxelizer::rectify(std::span<const LightDepthMap> 
     return mImpl->fromMaps(maps, transforms, out);
 }
 
+std::uint64_t EpipolarVoxelizer::gpuBytes() const {
+    return mImpl->depthMaps.texture().bytes();
+}
+
 Result<void> EpipolarVoxelizer::scan(EpipolarGrid& grid) {
     if (grid.transforms().empty())
         return Error{ErrorCode::InvalidArgument,

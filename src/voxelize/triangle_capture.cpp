@@ -119,6 +119,13 @@ Result<void> TriangleCapture::reserve(std::size_t slot, std::uint64_t triangles)
     return {};
 }
 
+std::uint64_t TriangleCapture::bytes() const {
+    std::uint64_t sum = mDefaultAttributes.bytes();
+    for (const gl::Buffer& buffer : mBuffers)
+        sum += buffer.bytes();
+    return sum;
+}
+
 void TriangleCapture::run(std::size_t slot, GLuint program, const Draw& draw) {
     const GladGLContext& gl = mDevice->gl;
     const gl::Buffer& buffer = mBuffers[slot];

@@ -39,6 +39,11 @@ public:
     /// Errors: InvalidArgument while the host's is active.
     [[nodiscard]] LAMINA_API Result<void> checkHost() const;
 
+    /// Room for a source's triangles, before any work. Errors: OutOfMemory.
+    [[nodiscard]] LAMINA_API Result<void> reserve(std::size_t slot, std::uint64_t triangles);
+    /// Bytes of GL memory held.
+    [[nodiscard]] LAMINA_API std::uint64_t bytes() const;
+
     /// Captures a source's triangles. The state is put back as Voxelizer promises.
     /// Waits for the GPU if a DrawSource does not say how many triangles it draws.
     /// Errors: OutOfMemory.
@@ -50,7 +55,6 @@ public:
 private:
     using Draw = std::function<void(gl::RasterStateGuard&)>;
 
-    [[nodiscard]] Result<void> reserve(std::size_t slot, std::uint64_t triangles);
     void run(std::size_t slot, GLuint program, const Draw& draw);
     [[nodiscard]] bool isFull(std::size_t slot) const;
     [[nodiscard]] std::uint64_t capacity(std::size_t slot) const;

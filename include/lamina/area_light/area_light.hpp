@@ -44,8 +44,10 @@ enum class AirlightForm : std::uint8_t {
 /// For which pixels and lights sums are gathered ([WD13] 3.4).
 enum class GatherMode : std::uint8_t {
     Full,
-    Interleaved, ///< A ninth of the lights a pixel, then a bilateral filter over 3 x 3 pixels.
-    Quarter,     ///< Every second pixel in x and y, then a bilateral upsample.
+    /// A ninth of the lights a pixel, then a bilateral filter over 3 x 3 pixels. Fewer than 9
+    /// lights, and those of VolumeLayout::Separate, are all gathered at every pixel.
+    Interleaved,
+    Quarter, ///< Every second pixel in x and y, then a bilateral upsample.
 };
 
 /// Point samples of the geometry, from which imperfect shadow maps are made.
@@ -150,7 +152,9 @@ public:
     /// view: perspective; its far plane may be infinite if the desc gives a farDistance.
     /// Errors: InvalidArgument (view, medium or light unsound, a MeshView that does not fit its
     /// buffers, a light at the eye), DeviceLimit, OutOfMemory, ShaderError; apply() then still has
-    /// the volumes of the last frame, as far as those were not being replaced.
+    /// the lights and volumes of the last frame, unless memory for other volumes came first.
+    /// Memory is found before any work on the GPU starts (but for VolumeLayout::Separate, and for
+    /// what a DrawSource without maxTriangles draws).
     /// Cost: for Imperfect maps a capture of the geometry and work by the number of points; for
     /// Rendered ones a draw of the geometry for each virtual light and more.
     [[nodiscard]] Result<AreaLightStats> prepare(const View& view, const LightSource& light,
@@ -166,12 +170,12 @@ public:
     /// the way to the eye. Returns the GL name of a texture of ours, RGBA16F, linear, of the view's
     /// size, valid until the next call or the end of this object; its alpha is that of `color`.
     /// view: looks from the same point as prepare()'s.
-    /// Errors: InvalidArgument (no prepare() before, a depth texture missing or of another size,
-    /// another viewpoint), OutOfMemory, ShaderError. GL: textures written as images need
-    /// GL_TEXTURE_FETCH_BARRIER_BIT before the call; the result needs none after it.
+    /// Errors: InvalidArgument (no prepare() before, a depth texture missing, a texture of another
+    /// size or of integers, another viewpoint), OutOfMemory, ShaderError. GL: textures written as
+    /// images need GL_TEXTURE_FETCH_BARRIER_BIT before the call; the result needs none after it.
     [[nodiscard]] Result<std::uint32_t> apply(const View& view, const SurfaceTextures& surfaces);
-    /// The same into the host's 2D texture of a colour-renderable format. `target` is none of
-    /// `surfaces`.
+    /// The same into level 0 of the host's 2D texture of a colour-renderable float or normalized
+    /// format. Errors: also of such a texture, or if it is one of `surfaces`.
     [[nodiscard]] Result<void> apply(const View& view, const SurfaceTextures& surfaces,
                                      std::uint32_t target);
 

@@ -79,6 +79,8 @@ public:
     /// GL_SHADER_IMAGE_ACCESS_BARRIER_BIT before the call. Errors: InvalidArgument (a grid without
     /// shadow volumes).
     [[nodiscard]] Result<void> scan(EpipolarGrid& grid);
+    /// Bytes of GL memory held: its own depth maps.
+    [[nodiscard]] std::uint64_t gpuBytes() const;
 
 private:
     struct Impl;
