@@ -132,6 +132,34 @@ TEST_F(AreaLightLimitsGlTest, AllMemoryIsReported) {
         }
 }
 
+TEST_F(AreaLightLimitsGlTest, StagesAreTimedOnlyIfAsked) {
+    for (const bool isMeasured : {false, true}) {
+        AreaLightDesc desc = smallDesc();
+        desc.measure = isMeasured;
+        auto effect = AreaLight::create(device(), desc).value();
+        EXPECT_EQ(effect.times(), AreaLightTimes{});
+        // Times arrive some frames later where the GPU has timers.
+        for (int frame = 0; frame < 6; ++frame) {
+            ASSERT_TRUE(prepare(effect, lamp()));
+            (void)airlight(effect);
+            gl().Finish();
+        }
+        const AreaLightTimes times = effect.times();
+        for (const AreaLightStage stage :
+             {AreaLightStage::Maps, AreaLightStage::Voxelize, AreaLightStage::Scan,
+              AreaLightStage::Gather, AreaLightStage::Composite}) {
+            const double time = times[static_cast<std::size_t>(stage)];
+            EXPECT_EQ(time > 0.0, isMeasured) << name(stage);
+            EXPECT_LT(time, 60e3) << name(stage);
+        }
+        // Drawn maps are no stage of their own.
+        desc.maps = ShadowMaps::Rendered;
+        auto rendered = AreaLight::create(device(), desc).value();
+        ASSERT_TRUE(prepare(rendered, lamp()));
+        EXPECT_EQ(rendered.times()[static_cast<std::size_t>(AreaLightStage::Maps)], 0.0);
+    }
+}
+
 TEST_F(AreaLightLimitsGlTest, OverBudgetIsAnErrorBeforeAnyWork) {
     for (const ShadowMaps maps : {ShadowMaps::Imperfect, ShadowMaps::Rendered}) {
         AreaLightDesc desc = smallDesc();

@@ -195,6 +195,65 @@ TEST_F(AreaLightSourcesGlTest, ShadowsInFogAgreeWithRayCasting) {
     }
 }
 
+TEST_F(AreaLightSourcesGlTest, HostMapsServeAsShadowMaps) {
+    // Maps that an engine would have drawn: distances by rays, a hemisphere each, tiled in a layer.
+    constexpr int kSide = 128;
+    const FogScene scene(gl(), mFence, reference::frontEye(), {16, 12});
+    const DiskLight light{{-5.6, 2.2, -0.5}, {1.0, -0.3, 0.1}, 0.6};
+    AreaLightDesc desc;
+    desc.virtualLights = 6;
+    const auto lights = sampleVirtualLights(light, desc.virtualLights).value();
+    GLuint texture = 0;
+    gl().CreateTextures(GL_TEXTURE_2D_ARRAY, 1, &texture);
+    gl().TextureStorage3D(texture, 1, GL_R32F, 3 * kSide, 2 * kSide, 1);
+    mTextures.push_back(texture);
+    std::vector<LightDepthMap> maps;
+    for (int i = 0; i < 6; ++i) {
+        const VirtualLight& own = lights[static_cast<std::size_t>(i)];
+        const glm::dvec3 s = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), own.normal));
+        const glm::dmat3 toWorld(s, glm::cross(own.normal, s), own.normal);
+        LightDepthMap map;
+        map.texture = texture;
+        map.kind = DepthMapKind::HemisphereArray;
+        map.firstTexel = {i % 3 * kSide, i / 3 * kSide};
+        map.size = glm::uvec2(kSide);
+        map.worldToHemisphere = glm::transpose(toWorld);
+        map.emptyDepth = 0.0f;
+        std::vector<float> distances;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const glm::dvec2 place = (glm::dvec2(x, y) + 0.5) * (2.0 / kSide) - 1.0;
+                const glm::dvec2 st(0.5 * (place.x + place.y), 0.5 * (place.x - place.y));
+                const double hit = scene.rays().firstHit(
+                    own.light.position,
+                    glm::normalize(toWorld *
+                                   glm::dvec3(st, 1.0 - std::abs(st.x) - std::abs(st.y))));
+                distances.push_back(std::isinf(hit) ? 0.0f : static_cast<float>(hit));
+            }
+        gl().TextureSubImage3D(texture, 0, static_cast<GLint>(map.firstTexel.x),
+                               static_cast<GLint>(map.firstTexel.y), 0, kSide, kSide, 1, GL_RED,
+                               GL_FLOAT, distances.data());
+        maps.push_back(map);
+    }
+    auto effect = AreaLight::create(device(), desc).value();
+    const auto stats =
+        effect.prepare(scene.view(), light, fog(), std::span<const LightDepthMap>(maps));
+    ASSERT_TRUE(stats) << stats.error().text;
+    EXPECT_EQ(stats->shadowMaps, 0u);
+    EXPECT_EQ(stats->mapBytes, 0u);
+    ASSERT_TRUE(effect.apply(scene.view(), scene.surfaces()));
+    const auto marched = march(scene, lights, fog(), 160);
+    EXPECT_GT(marched.shadow(), 0.02);
+    const double error = relativeRmse(sums(scene, effect), marched.airlight);
+    std::printf("host maps: %.2f %%, shadow %.1f %%\n", 100.0 * error, 100.0 * marched.shadow());
+    EXPECT_LE(error, 0.005);
+    // Maps in another order are other lights' maps.
+    std::swap(maps.front(), maps.back());
+    ASSERT_TRUE(effect.prepare(scene.view(), light, fog(), std::span<const LightDepthMap>(maps)));
+    ASSERT_TRUE(effect.apply(scene.view(), scene.surfaces()));
+    EXPECT_GT(relativeRmse(sums(scene, effect), marched.airlight), error);
+}
+
 TEST_F(AreaLightSourcesGlTest, ATextureMayChangeFromFrameToFrame) {
     const FogScene scene(gl(), mFence, reference::frontEye(), {24, 20});
     RectangleLight light;
