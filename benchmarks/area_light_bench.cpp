@@ -1,5 +1,6 @@
 // Tables 1 and 2 of [WD13]: the naive way (a shadow volume at a time) beside imperfect voxelized
-// shadow volumes, and the ways to gather. Prints Markdown.
+// shadow volumes, and the ways to gather; and a profile of what a pass costs without work, which
+// bounds what fewer passes can save. Prints Markdown.
 //
 //   lamina_area_light_bench [--quick] [--context=auto|egl|osmesa]
 
@@ -15,6 +16,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -75,13 +77,13 @@ struct Scene {
 
 /// Least times of the stages over some frames, after one that warms up.
 AreaLightTimes measure(const Device& device, AreaLightDesc desc, const Scene& scene,
-                       const GeometrySource& source, int frames) {
+                       std::span<const GeometrySource> sources, int frames) {
     desc.measure = true;
     AreaLight effect = need(AreaLight::create(device, desc));
     AreaLightTimes least;
     least.fill(1e30);
     for (int frame = 0; frame <= frames; ++frame) {
-        need(effect.prepare(scene.view, scene.light, scene.medium, {&source, 1}));
+        need(effect.prepare(scene.view, scene.light, scene.medium, sources));
         need(effect.apply(scene.view, scene.surfaces));
         scene.gl.Finish();
         const AreaLightTimes times = effect.times();
@@ -111,10 +113,11 @@ void printNaiveTable(const Device& device, const Scene& scene, const GeometrySou
         AreaLightDesc desc;
         desc.virtualLights = lights;
         desc.maps = ShadowMaps::Imperfect;
-        const AreaLightTimes ours = measure(device, desc, scene, source, 2);
+        const AreaLightTimes ours = measure(device, desc, scene, {&source, 1}, 2);
         desc.maps = ShadowMaps::Rendered;
         desc.layout = VolumeLayout::Separate;
-        const AreaLightTimes naive = measure(device, desc, scene, source, lights > 64 ? 1 : 2);
+        const AreaLightTimes naive =
+            measure(device, desc, scene, {&source, 1}, lights > 64 ? 1 : 2);
         double frames[2] = {};
         for (std::size_t i = 0; i < ours.size(); ++i) {
             frames[0] += naive[i];
@@ -131,6 +134,47 @@ void printNaiveTable(const Device& device, const Scene& scene, const GeometrySou
                     frames[1], frames[0] / frames[1]);
         std::fflush(stdout);
     }
+}
+
+/// Where the time of a volume goes, per volume of many: a pass alone, its work, and so the most
+/// that one pass for all can save.
+void printProfile(const Device& device, const Scene& scene, const Scene& pixel,
+                  const GeometrySource& source, std::uint32_t lights) {
+    const auto each = [&](VolumeLayout layout, std::uint32_t voxels, const Scene& seen,
+                          std::span<const GeometrySource> sources) {
+        AreaLightDesc desc;
+        desc.virtualLights = lights;
+        desc.layout = layout;
+        desc.maps = ShadowMaps::Rendered;
+        desc.voxels = {voxels, voxels, 128};
+        desc.mapTexels = std::max(voxels, 4u);
+        AreaLightTimes times = measure(device, desc, seen, sources, 3);
+        for (double& time : times)
+            time *= 1e3 / lights;
+        return times;
+    };
+    // Volumes of one texel, maps of 16, a picture of one pixel, no triangles: passes alone.
+    const auto pass = each(VolumeLayout::Separate, 1, pixel, {});
+    const auto rectified = each(VolumeLayout::Separate, 128, scene, {});
+    const auto rectifiedAtOnce = each(VolumeLayout::Tiled, 128, scene, {});
+    const auto naive = each(VolumeLayout::Separate, 128, scene, {&source, 1});
+    const auto atOnce = each(VolumeLayout::Tiled, 128, scene, {&source, 1});
+    std::printf("\n| us per volume of %u | pass alone | naive | one pass for all | saved | most "
+                "that passes can save |\n|---|---|---|---|---|---|\n",
+                lights);
+    const auto row = [](const char* name, double alone, double separate, double together) {
+        std::printf("| %s | %.1f | %.1f | %.1f | %.2fx | %.2fx |\n", name, alone, separate,
+                    together, separate / together, separate / std::max(separate - alone, 1e-3));
+    };
+    const auto voxelize = AreaLightStage::Voxelize;
+    row("clear a map and rectify it", at(pass, voxelize), at(rectified, voxelize),
+        at(rectifiedAtOnce, voxelize));
+    row("draw a map of the triangles", 0.0, at(naive, voxelize) - at(rectified, voxelize),
+        at(atOnce, voxelize) - at(rectifiedAtOnce, voxelize));
+    row("scan", at(pass, AreaLightStage::Scan), at(naive, AreaLightStage::Scan),
+        at(atOnce, AreaLightStage::Scan));
+    row("gather", at(pass, AreaLightStage::Gather), at(naive, AreaLightStage::Gather),
+        at(atOnce, AreaLightStage::Gather));
 }
 
 void printGatherTable(const Device& device, const Scene& scene, const GeometrySource& source,
@@ -157,7 +201,7 @@ void printGatherTable(const Device& device, const Scene& scene, const GeometrySo
         desc.gather = way.gather;
         desc.airlight = way.airlight;
         desc.interpolate = way.interpolate;
-        const AreaLightTimes times = measure(device, desc, scene, source, 2);
+        const AreaLightTimes times = measure(device, desc, scene, {&source, 1}, 2);
         const double sum = at(times, AreaLightStage::Gather) + at(times, AreaLightStage::Composite);
         full = full == 0.0 ? sum : full;
         std::printf("| %s | %.1f | %.1f | %.2f |\n", way.name, at(times, AreaLightStage::Gather),
@@ -202,6 +246,8 @@ int main(int argc, char** argv) {
                     wanted.c_str(), device.info().renderer.c_str(),
                     device.info().isSoftware ? " [software: runs on the CPU]" : "",
                     loaded->triangles.size(), size.x, size.y);
+        const Scene pixel(gl, loaded->bounds(), glm::uvec2(1));
+        printProfile(device, scene, pixel, source, isQuick ? 4 : 64);
         printNaiveTable(device, scene, source, isQuick ? 4 : 256);
         printGatherTable(device, scene, source, isQuick ? 9 : 128);
     }

@@ -1,23 +1,28 @@
 // A large television in fog, behind a fence, columns and a tree: imperfect voxelized shadow volumes
 // of [WD13], and the pictures that its figures show.
 //
-//   fog_area_light FOLDER [WIDTH [LIGHTS [FIGURE]]]
+//   fog_area_light FOLDER [--figure FIGURE ...] [--width PIXELS] [--lights N] [--voxels A T P]
+//                  [--map-texels N] [--maps KIND] [--gather WAY] [--airlight FORM]
 //
-// FIGURE: shadows (without and with), hard (a point and the area), sizes, interpolation,
-// resolution, gather (full, interleaved, quarter and their differences), or all.
+// Figures: shadows (without and with, Fig. 1), hard (a point and the area, Fig. 2), resolution (of
+// maps and volumes at once, Fig. 6), alpha (detached shadows, Fig. 7), samples (of one volume, Fig.
+// 8), sizes (Fig. 11), interpolation (8 lights without and with, Fig. 13), gather (full,
+// interleaved, quarter and their differences), or all.
 
 #include "support/check.hpp"
 #include "support/fog_stage.hpp"
 #include "support/shapes.hpp"
 #include "support/tree.hpp"
 
+#include <CLI/CLI.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -88,10 +93,10 @@ std::vector<glm::vec3> makeFilm(const glm::uvec2& size) {
 
 class Figures {
 public:
-    Figures(std::filesystem::path folder, std::uint32_t width, std::uint32_t lights)
+    Figures(std::filesystem::path folder, std::uint32_t width, const lamina::AreaLightDesc& desc)
         : mFolder(std::move(folder))
         , mWidth(width)
-        , mLights(lights) {
+        , mDesc(desc) {
         TriangleMesh ground;
         addBox(ground, {-12.0f, -0.1f, -12.0f}, {12.0f, 0.0f, 12.0f});
         const example::Tree tree = example::makeTree(5);
@@ -107,36 +112,29 @@ public:
 
     void shadows() {
         draw(mWidth, 1.0);
-        write("area_light", mStage.light(desc(), light(1.0), kFog));
+        write("area_light", mStage.light(mDesc, light(1.0), kFog));
         draw(mWidth / 2, 1.0);
-        write("without_and_with", example::montage({mStage.light(desc(), light(1.0), kFog, false),
-                                                    mStage.light(desc(), light(1.0), kFog)},
+        write("without_and_with", example::montage({mStage.light(mDesc, light(1.0), kFog, false),
+                                                    mStage.light(mDesc, light(1.0), kFog)},
                                                    2));
     }
     void hard() {
         draw(mWidth / 2, 1.0);
-        // As strong as the whole television seen from the front.
-        lamina::AreaLightDesc one = desc();
-        one.voxels = {512, 512, 512};
-        one.mapTexels = 1024;
-        const lamina::PointLight point{light(1.0).corner +
-                                           0.5 * (light(1.0).edgeU + light(1.0).edgeV),
-                                       glm::vec3(40.0f, 34.0f, 36.0f)};
-        write("hard_and_soft",
-              example::montage(
-                  {mStage.light(one, point, kFog), mStage.light(desc(), light(1.0), kFog)}, 2));
+        write("hard_and_soft", example::montage({mStage.light(fine(512), middle(), kFog),
+                                                 mStage.light(mDesc, light(1.0), kFog)},
+                                                2));
     }
     void sizes() {
         std::vector<Image> images;
         for (const double size : {0.1, 0.4, 0.8, 1.2}) {
             draw(mWidth / 2, size);
-            images.push_back(mStage.light(desc(), light(size), kFog));
+            images.push_back(mStage.light(mDesc, light(size), kFog));
         }
         write("sizes", example::montage(images, 2));
     }
     void interpolation() {
         draw(mWidth / 2, 1.0);
-        lamina::AreaLightDesc few = desc();
+        lamina::AreaLightDesc few = mDesc;
         few.virtualLights = 8;
         few.voxels = glm::uvec3(64);
         few.maps = lamina::ShadowMaps::Rendered;
@@ -150,12 +148,40 @@ public:
         draw(mWidth / 2, 1.0);
         std::vector<Image> images;
         for (const std::uint32_t voxels : {16u, 32u, 64u, 128u}) {
-            lamina::AreaLightDesc other = desc();
+            lamina::AreaLightDesc other = mDesc;
             other.voxels = glm::uvec3(voxels);
             other.mapTexels = voxels;
             images.push_back(mStage.light(other, light(1.0), kFog));
         }
         write("resolution", example::montage(images, 2));
+    }
+    void alpha() {
+        draw(mWidth / 2, 1.0);
+        std::vector<Image> images;
+        for (const std::uint32_t voxels : {16u, 64u, 128u, 512u}) {
+            lamina::AreaLightDesc other = fine(512);
+            other.voxels.x = voxels;
+            images.push_back(mStage.light(other, middle(), kFog));
+        }
+        write("alpha", example::montage(images, 2));
+    }
+    void samples() {
+        draw(mWidth / 4, 1.0);
+        std::vector<Image> images;
+        for (const std::uint32_t voxels : {32u, 128u, 512u})
+            for (int column = 0; column < 4; ++column) {
+                lamina::AreaLightDesc other = fine(512);
+                if (column == 0 || column == 3)
+                    other.mapTexels = 2 * voxels;
+                if (column == 1 || column == 3)
+                    other.voxels.z = voxels;
+                if (column == 2 || column == 3)
+                    other.voxels.y = voxels;
+                if (column == 3)
+                    other.voxels.x = voxels;
+                images.push_back(mStage.light(other, middle(), kFog));
+            }
+        write("samples", example::montage(images, 4));
     }
     void gather() {
         draw(mWidth / 2, 1.0);
@@ -163,7 +189,7 @@ public:
         for (const lamina::GatherMode mode :
              {lamina::GatherMode::Full, lamina::GatherMode::Interleaved,
               lamina::GatherMode::Quarter}) {
-            lamina::AreaLightDesc other = desc();
+            lamina::AreaLightDesc other = mDesc;
             other.gather = mode;
             images.push_back(mStage.light(other, light(1.0), kFog));
         }
@@ -175,10 +201,17 @@ public:
 private:
     static constexpr lamina::Medium kFog{0.13f, glm::vec3(0.95f), 0.25f};
 
-    [[nodiscard]] lamina::AreaLightDesc desc() const {
-        lamina::AreaLightDesc made;
-        made.virtualLights = mLights;
+    /// One volume of this many samples along each axis.
+    [[nodiscard]] lamina::AreaLightDesc fine(std::uint32_t voxels) const {
+        lamina::AreaLightDesc made = mDesc;
+        made.voxels = glm::uvec3(voxels);
+        made.mapTexels = 2 * voxels;
         return made;
+    }
+    /// A lamp in the middle of the television, as strong as all of it seen from the front.
+    [[nodiscard]] lamina::PointLight middle() const {
+        const lamina::RectangleLight whole = light(1.0);
+        return {whole.corner + 0.5 * (whole.edgeU + whole.edgeV), glm::vec3(40.0f, 34.0f, 36.0f)};
     }
     /// The television, of a share of its full size.
     [[nodiscard]] lamina::RectangleLight light(double size) const {
@@ -215,7 +248,7 @@ private:
 
     std::filesystem::path mFolder;
     std::uint32_t mWidth;
-    std::uint32_t mLights;
+    lamina::AreaLightDesc mDesc;
     example::FogStage mStage;
     std::uint32_t mFilm = 0;
 };
@@ -223,35 +256,61 @@ private:
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 2) {
-        std::fprintf(stderr, "usage: fog_area_light FOLDER [WIDTH [LIGHTS [FIGURE]]]\n");
-        return 2;
-    }
-    const auto number = [&](int i, unsigned otherwise) {
-        return argc > i ? static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10))
-                        : otherwise;
-    };
-    const std::uint32_t width = number(2, 640);
-    const std::uint32_t lights = number(3, 128);
-    const std::string figure = argc > 4 ? argv[4] : "shadows";
-    if (width < 16 || lights == 0) {
-        std::fprintf(stderr,
-                     "fog_area_light: expected a width of 16 or more and 1 light or more\n");
-        return 2;
-    }
-    std::filesystem::create_directories(argv[1]);
-    Figures figures(argv[1], width, lights);
-    const std::pair<const char*, void (Figures::*)()> all[] = {
-        {"shadows", &Figures::shadows},       {"hard", &Figures::hard},
-        {"sizes", &Figures::sizes},           {"interpolation", &Figures::interpolation},
-        {"resolution", &Figures::resolution}, {"gather", &Figures::gather}};
-    bool isKnown = false;
+    const std::map<std::string, void (Figures::*)()> all = {
+        {"shadows", &Figures::shadows},
+        {"hard", &Figures::hard},
+        {"resolution", &Figures::resolution},
+        {"alpha", &Figures::alpha},
+        {"samples", &Figures::samples},
+        {"sizes", &Figures::sizes},
+        {"interpolation", &Figures::interpolation},
+        {"gather", &Figures::gather}};
+    std::string folder;
+    std::vector<std::string> figures{"shadows"};
+    std::uint32_t width = 640;
+    std::vector<std::uint32_t> voxels{128, 128, 128};
+    lamina::AreaLightDesc desc;
+    desc.virtualLights = 128;
+
+    CLI::App app("A large television in fog.");
+    app.add_option("folder", folder, "Where the pictures go, PNGs")->required();
+    std::vector<std::string> names{"all"};
     for (const auto& [name, run] : all)
-        if (figure == name || figure == "all") {
-            (figures.*run)();
-            isKnown = true;
-        }
-    if (!isKnown)
-        std::fprintf(stderr, "fog_area_light: no figure %s\n", figure.c_str());
-    return isKnown ? 0 : 2;
+        names.push_back(name);
+    app.add_option("--figure", figures, "One or more of the pictures, or all")
+        ->check(CLI::IsMember(names));
+    app.add_option("--width", width, "Pixels of the largest picture")->check(CLI::Range(64, 4096));
+    app.add_option("--lights", desc.virtualLights, "Virtual lights of the television")
+        ->check(CLI::Range(1, 1024));
+    app.add_option("--voxels", voxels, "Of each shadow volume, along alpha, theta and phi")
+        ->expected(3)
+        ->check(CLI::Range(1, 2048));
+    app.add_option("--map-texels", desc.mapTexels, "A side of each shadow map")
+        ->check(CLI::Range(4, 8192));
+    using Maps = lamina::ShadowMaps;
+    app.add_option("--maps", desc.maps, "Shadow maps: automatic, rendered, imperfect")
+        ->transform(
+            CLI::CheckedTransformer(std::map<std::string, Maps>{{"automatic", Maps::Automatic},
+                                                                {"rendered", Maps::Rendered},
+                                                                {"imperfect", Maps::Imperfect}}));
+    using Gather = lamina::GatherMode;
+    app.add_option("--gather", desc.gather, "Of lights: full, interleaved, quarter")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, Gather>{{"full", Gather::Full},
+                                          {"interleaved", Gather::Interleaved},
+                                          {"quarter", Gather::Quarter}}));
+    using Form = lamina::AirlightForm;
+    app.add_option("--airlight", desc.airlight, "Visibility in it: weighted, factored")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Form>{
+            {"weighted", Form::Weighted}, {"factored", Form::Factored}}));
+    CLI11_PARSE(app, argc, argv);
+    desc.voxels = {voxels[0], voxels[1], voxels[2]};
+
+    std::filesystem::create_directories(folder);
+    Figures drawn(folder, width, desc);
+    for (const auto& [name, run] : all)
+        for (const std::string& figure : figures)
+            if (figure == name || figure == "all")
+                (drawn.*run)();
+    return 0;
 }
