@@ -4,7 +4,7 @@
 // A fragment owns a pixel of the view:
 //   1. its sums: its own; the mean of the 3 x 3 pixels that share the lights (interleaved); or those of the
 //      nearest four pixels of the sums, bilinear (quarter resolution). The latter two leave out what lies at
-//      another distance or faces another way, so that edges stay;
+//      another distance or (on surfaces) faces another way, so that edges stay;
 //   2. the composite.
 // permute LAMINA_AREA_LIGHT_FILTER = LAMINA_AREA_LIGHT_FILTER_NONE LAMINA_AREA_LIGHT_FILTER_INTERLEAVED LAMINA_AREA_LIGHT_FILTER_UPSAMPLE
 #include <area_light/pass_blocks.glsl>
@@ -35,34 +35,37 @@ Seen seenAt(ivec2 pixel) {
     return seen;
 }
 
-// In [0,1], small for pixels of different surfaces: both sums of one say nothing about the other.
-float likeness(Seen a, Seen b) {
+// In [0,1], small for pixels of different surfaces: airlight (x) of one says nothing about the other if they
+// are apart, surface light (y) neither if they face different ways. tolerance: of relative distance.
+vec2 likeness(Seen a, Seen b, float tolerance, float sharpness) {
     if (a.isSky != b.isSky)
-        return 0.0;
-    float apart = abs(a.distance - b.distance) / (laminaGather.numbers.y * min(a.distance, b.distance));
+        return vec2(0.0);
+    float apart = abs(a.distance - b.distance) / (tolerance * min(a.distance, b.distance));
     // Pixels without a normal, of glowing things, go together.
     bool hasNormals = a.normal != vec3(0.0) || b.normal != vec3(0.0);
     float facing = hasNormals ? max(dot(a.normal, b.normal), 0.0) : 1.0;
-    return exp(-apart * apart) * pow(facing, 8.0);
+    return exp(-apart * apart) * vec2(1.0, pow(facing, sharpness));
 }
 
 struct Sums {
     vec3 airlight;
     vec3 surface;
-    float weight;
+    vec2 weights;
 };
 
-void add(inout Sums sums, ivec2 cell, float weight) {
-    sums.airlight += weight * texelFetch(laminaAirlightSums, cell, 0).rgb;
-    sums.surface += weight * texelFetch(laminaSurfaceSums, cell, 0).rgb;
-    sums.weight += weight;
+void add(inout Sums sums, ivec2 cell, vec2 weights) {
+    sums.airlight += weights.x * texelFetch(laminaAirlightSums, cell, 0).rgb;
+    sums.surface += weights.y * texelFetch(laminaSurfaceSums, cell, 0).rgb;
+    sums.weights += weights;
 }
 
 Sums filtered(ivec2 pixel, Seen seen) {
-    Sums sums = Sums(vec3(0.0), vec3(0.0), 0.0);
+    Sums sums = Sums(vec3(0.0), vec3(0.0), vec2(0.0));
 #if LAMINA_AREA_LIGHT_FILTER == LAMINA_AREA_LIGHT_FILTER_NONE
-    add(sums, pixel, 1.0);
+    add(sums, pixel, vec2(1.0));
 #else
+    const float kSharpness = 8.0;
+    float tolerance = laminaGather.numbers.y;
     ivec2 last = ivec2(laminaGather.pixels.xy) - 1;
     ivec2 viewLast = ivec2(laminaView.size.xy) - 1;
 #if LAMINA_AREA_LIGHT_FILTER == LAMINA_AREA_LIGHT_FILTER_INTERLEAVED
@@ -70,7 +73,7 @@ Sums filtered(ivec2 pixel, Seen seen) {
     ivec2 corner = clamp(pixel - 1, ivec2(0), max(last - 2, ivec2(0)));
     for (int i = 0; i < 9; ++i) {
         ivec2 cell = min(corner + ivec2(i % 3, i / 3), last);
-        add(sums, cell, cell == pixel ? 1.0 : likeness(seen, seenAt(cell)));
+        add(sums, cell, cell == pixel ? vec2(1.0) : likeness(seen, seenAt(cell), tolerance, kSharpness));
     }
 #else
     int scale = int(laminaGather.pixels.z);
@@ -80,23 +83,32 @@ Sums filtered(ivec2 pixel, Seen seen) {
         ivec2 offset = ivec2(i & 1, i >> 1);
         ivec2 cell = min(base + offset, last);
         vec2 near = mix(1.0 - part, part, equal(offset, ivec2(1)));
-        add(sums, cell, near.x * near.y * likeness(seen, seenAt(min(cell * scale, viewLast))));
+        add(sums, cell, near.x * near.y * likeness(seen, seenAt(min(cell * scale, viewLast)), tolerance, kSharpness));
     }
-    // A thing too thin for the sums' pixels takes those of what comes nearest to it in distance around.
-    if (sums.weight < 0.02) {
+    // A thing too thin for the sums' pixels takes airlight from what comes nearest to it in distance around,
+    // and surface light from what is roughly alike; if nothing is, it stays dark: it may well look away from
+    // the light that others have.
+    const float kLeastWeight = 0.02;
+    if (min(sums.weights.x, sums.weights.y) < kLeastWeight) {
         float least = 1e30;
-        ivec2 alike = base;
+        ivec2 nearest = base;
+        Sums around = Sums(vec3(0.0), vec3(0.0), vec2(0.0));
         for (int i = 0; i < 16; ++i) {
             ivec2 cell = clamp(base - 1 + ivec2(i & 3, i >> 2), ivec2(0), last);
             Seen other = seenAt(min(cell * scale, viewLast));
             float apart = abs(log(other.distance / seen.distance));
-            if (apart < least) {
-                least = apart;
-                alike = cell;
-            }
+            nearest = apart < least ? cell : nearest;
+            least = min(apart, least);
+            add(around, cell, vec2(0.0, likeness(seen, other, 6.0 * tolerance, 2.0).y));
         }
-        sums = Sums(vec3(0.0), vec3(0.0), 0.0);
-        add(sums, alike, 1.0);
+        if (sums.weights.x < kLeastWeight) {
+            sums.airlight = texelFetch(laminaAirlightSums, nearest, 0).rgb;
+            sums.weights.x = 1.0;
+        }
+        if (sums.weights.y < kLeastWeight) {
+            sums.surface = around.surface;
+            sums.weights.y = max(around.weights.y, 0.2);
+        }
     }
 #endif
 #endif
@@ -107,8 +119,8 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Seen seen = seenAt(pixel);
     Sums sums = filtered(pixel, seen);
-    vec3 airlight = sums.airlight / sums.weight;
-    vec3 surface = sums.surface / sums.weight;
+    vec3 airlight = sums.airlight / sums.weights.x;
+    vec3 surface = sums.surface / sums.weights.y;
     if (laminaHas(LAMINA_AREA_LIGHT_HAS_ALBEDO))
         surface *= texelFetch(laminaAlbedos, pixel, 0).rgb;
     vec4 color = laminaHas(LAMINA_AREA_LIGHT_HAS_COLOR) ? texelFetch(laminaColors, pixel, 0) : vec4(0.0, 0.0, 0.0, 1.0);

@@ -221,6 +221,48 @@ TEST_F(AreaLightRobustGlTest, ShiftedVolumesShowLessBanding) {
     }
 }
 
+TEST_F(AreaLightRobustGlTest, CoarseGathersKeepTheEdgesOfLitSurfaces) {
+    // Fence bars of about a pixel before bright ground: no sum of a quarter's pixels is theirs.
+    const FogScene scene(gl(), mFence, reference::frontEye(), {160, 128});
+    AreaLightDesc desc;
+    desc.virtualLights = 36;
+    desc.voxels = glm::uvec3(64);
+    desc.mapTexels = 128;
+    const RectangleLight light = facing({0.0, 3.8, -3.6}, {0, 0, 0}, 3.0, 1.2);
+    const auto pixels = [&](GatherMode mode) {
+        desc.gather = mode;
+        auto effect = lit(desc, scene, mFence, light, fog());
+        std::vector<double> values;
+        const auto picture = effect.apply(scene.view(), scene.surfaces()).value();
+        for (const glm::vec4& texel : scene.read(picture))
+            values.push_back(static_cast<double>(texel.x));
+        return values;
+    };
+    const auto full = pixels(GatherMode::Full);
+    double mean = 0.0;
+    for (const double value : full)
+        mean += value / static_cast<double>(full.size());
+    for (const GatherMode mode : {GatherMode::Interleaved, GatherMode::Quarter}) {
+        const auto coarse = pixels(mode);
+        // On bars: facing the eye, their backs to the light.
+        std::vector<double> found, expected;
+        std::size_t glaring = 0;
+        for (std::size_t i = 0; i < full.size(); ++i)
+            if (std::abs(scene.point(i).z + 0.98) < 0.01 && scene.normal(i).z > 0.9) {
+                found.push_back(coarse[i]);
+                expected.push_back(full[i]);
+                glaring += coarse[i] > full[i] + 0.5 * mean ? 1 : 0;
+            }
+        const double error = relativeRmse(found, expected);
+        std::printf("%s: bars %.1f %%, %zu of %zu glare, all %.1f %%\n",
+                    mode == GatherMode::Quarter ? "quarter" : "interleaved", 100.0 * error, glaring,
+                    found.size(), 100.0 * relativeRmse(coarse, full));
+        EXPECT_GT(found.size(), 200u);
+        EXPECT_EQ(glaring, 0u);
+        EXPECT_LE(error, 0.1);
+    }
+}
+
 TEST_F(AreaLightRobustGlTest, TilesWithoutALightAreNotTouched) {
     const FogScene scene(gl(), mFence, reference::frontEye(), {32, 24});
     AreaLightDesc desc;
