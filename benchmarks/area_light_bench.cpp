@@ -18,6 +18,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace {
@@ -75,15 +76,22 @@ struct Scene {
     GLuint textures[2] = {};
 };
 
+/// What casts shadows: triangles, or maps that are there already.
+using Casters = std::variant<std::span<const GeometrySource>, std::span<const LightDepthMap>>;
+
 /// Least times of the stages over some frames, after one that warms up.
 AreaLightTimes measure(const Device& device, AreaLightDesc desc, const Scene& scene,
-                       std::span<const GeometrySource> sources, int frames) {
+                       const Casters& casters, int frames) {
     desc.measure = true;
     AreaLight effect = need(AreaLight::create(device, desc));
     AreaLightTimes least;
     least.fill(1e30);
     for (int frame = 0; frame <= frames; ++frame) {
-        need(effect.prepare(scene.view, scene.light, scene.medium, sources));
+        std::visit(
+            [&](const auto& from) {
+                need(effect.prepare(scene.view, scene.light, scene.medium, from));
+            },
+            casters);
         need(effect.apply(scene.view, scene.surfaces));
         scene.gl.Finish();
         const AreaLightTimes times = effect.times();
@@ -93,88 +101,128 @@ AreaLightTimes measure(const Device& device, AreaLightDesc desc, const Scene& sc
     return least;
 }
 
+/// Maps of all lights, drawn already: a ball around each light.
+class HostMaps {
+public:
+    HostMaps(const GladGLContext& functions, std::span<const VirtualLight> lights)
+        : gl(functions) {
+        constexpr int kSide = 128;
+        gl.CreateTextures(GL_TEXTURE_2D_ARRAY, 1, &mTexture);
+        gl.TextureStorage3D(mTexture, 1, GL_R32F, kSide, kSide,
+                            static_cast<GLsizei>(lights.size()));
+        const float radius = 1.0f;
+        gl.ClearTexImage(mTexture, 0, GL_RED, GL_FLOAT, &radius);
+        for (const VirtualLight& light : lights) {
+            const glm::dvec3 s = glm::normalize(glm::cross(glm::dvec3(1, 0, 0), light.normal));
+            LightDepthMap map;
+            map.texture = mTexture;
+            map.kind = DepthMapKind::HemisphereArray;
+            map.layer = static_cast<std::uint32_t>(mMaps.size());
+            map.worldToHemisphere =
+                glm::transpose(glm::dmat3(s, glm::cross(light.normal, s), light.normal));
+            mMaps.push_back(map);
+        }
+    }
+    ~HostMaps() { gl.DeleteTextures(1, &mTexture); }
+    HostMaps(const HostMaps&) = delete;
+    HostMaps& operator=(const HostMaps&) = delete;
+
+    [[nodiscard]] std::span<const LightDepthMap> maps() const { return mMaps; }
+
+private:
+    const GladGLContext& gl;
+    GLuint mTexture = 0;
+    std::vector<LightDepthMap> mMaps;
+};
+
 double at(const AreaLightTimes& times, AreaLightStage stage) {
     return times[static_cast<std::size_t>(stage)];
 }
 
-double volumes(const AreaLightTimes& times) {
-    return at(times, AreaLightStage::Maps) + at(times, AreaLightStage::Voxelize);
+using Sources = std::span<const GeometrySource>;
+
+/// The stages of one way to make and use the volumes, ms.
+struct Stages {
+    double maps = 0.0;
+    double voxelize = 0.0;
+    double scan = 0.0;
+    double gather = 0.0;
+
+    [[nodiscard]] double frame() const { return maps + voxelize + scan + gather; }
+};
+
+/// pixel: a view of one pixel, for the stages that do not depend on it. sources: of the maps.
+Stages measureStages(const Device& device, const AreaLightDesc& desc, const Scene& scene,
+                     const Scene& pixel, Sources sources, int frames) {
+    const auto lights = need(sampleVirtualLights(scene.light, desc.virtualLights));
+    const HostMaps maps(scene.gl, lights);
+    const AreaLightTimes ready = measure(device, desc, pixel, maps.maps(), 4 * frames);
+    const AreaLightTimes drawn = measure(device, desc, scene, sources, frames);
+    Stages stages;
+    stages.voxelize = at(ready, AreaLightStage::Voxelize);
+    stages.scan = at(ready, AreaLightStage::Scan);
+    // Drawn maps are timed with their rectification.
+    stages.maps = desc.maps == ShadowMaps::Imperfect
+                      ? at(drawn, AreaLightStage::Maps)
+                      : at(drawn, AreaLightStage::Voxelize) - stages.voxelize;
+    stages.gather = at(drawn, AreaLightStage::Gather);
+    return stages;
 }
 
-void printNaiveTable(const Device& device, const Scene& scene, const GeometrySource& source,
+void printNaiveTable(const Device& device, const Scene& scene, const Scene& pixel, Sources sources,
                      std::uint32_t mostLights) {
-    std::printf(
-        "\n| VPLs | maps + voxelize: naive | IVSV (maps, voxelize) | ratio | scan: naive | IVSV | "
-        "ratio | gather: naive | IVSV | ratio | frame: naive | IVSV | ratio |\n"
-        "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    std::printf("\n| VPLs | shadow maps: naive | IVSV | ratio | voxelize: naive | IVSV | ratio | "
+                "scan: naive | IVSV | ratio | gather: naive | IVSV | ratio | frame: naive | IVSV | "
+                "ratio |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const std::uint32_t lights : {1u, 4u, 16u, 64u, 256u}) {
         if (lights > mostLights)
             break;
         AreaLightDesc desc;
         desc.virtualLights = lights;
         desc.maps = ShadowMaps::Imperfect;
-        const AreaLightTimes ours = measure(device, desc, scene, {&source, 1}, 2);
+        const int frames = lights > 64 ? 1 : 2;
+        const Stages ours = measureStages(device, desc, scene, pixel, sources, frames);
         desc.maps = ShadowMaps::Rendered;
         desc.layout = VolumeLayout::Separate;
-        const AreaLightTimes naive =
-            measure(device, desc, scene, {&source, 1}, lights > 64 ? 1 : 2);
-        double frames[2] = {};
-        for (std::size_t i = 0; i < ours.size(); ++i) {
-            frames[0] += naive[i];
-            frames[1] += ours[i];
-        }
-        const auto ratio = [&](AreaLightStage stage) { return at(naive, stage) / at(ours, stage); };
-        std::printf("| %u | %.1f | %.1f (%.1f, %.1f) | %.1fx | %.1f | %.1f | %.1fx | %.1f | %.1f | "
-                    "%.1fx | %.0f | %.0f | %.1fx |\n",
-                    lights, volumes(naive), volumes(ours), at(ours, AreaLightStage::Maps),
-                    at(ours, AreaLightStage::Voxelize), volumes(naive) / volumes(ours),
-                    at(naive, AreaLightStage::Scan), at(ours, AreaLightStage::Scan),
-                    ratio(AreaLightStage::Scan), at(naive, AreaLightStage::Gather),
-                    at(ours, AreaLightStage::Gather), ratio(AreaLightStage::Gather), frames[0],
-                    frames[1], frames[0] / frames[1]);
+        const Stages naive = measureStages(device, desc, scene, pixel, sources, frames);
+        std::printf("| %u |", lights);
+        const auto pair = [](double slow, double fast) {
+            std::printf(" %.2f | %.2f | %.1fx |", slow, fast, slow / fast);
+        };
+        pair(naive.maps, ours.maps);
+        pair(naive.voxelize, ours.voxelize);
+        pair(naive.scan, ours.scan);
+        pair(naive.gather, ours.gather);
+        pair(naive.frame(), ours.frame());
+        std::printf("\n");
         std::fflush(stdout);
     }
 }
 
-/// Where the time of a volume goes, per volume of many: a pass alone, its work, and so the most
-/// that one pass for all can save.
-void printProfile(const Device& device, const Scene& scene, const Scene& pixel,
-                  const GeometrySource& source, std::uint32_t lights) {
-    const auto each = [&](VolumeLayout layout, std::uint32_t voxels, const Scene& seen,
-                          std::span<const GeometrySource> sources) {
-        AreaLightDesc desc;
-        desc.virtualLights = lights;
-        desc.layout = layout;
-        desc.maps = ShadowMaps::Rendered;
-        desc.voxels = {voxels, voxels, 128};
-        desc.mapTexels = std::max(voxels, 4u);
-        AreaLightTimes times = measure(device, desc, seen, sources, 3);
-        for (double& time : times)
-            time *= 1e3 / lights;
-        return times;
-    };
-    // Volumes of one texel, maps of 16, a picture of one pixel, no triangles: passes alone.
-    const auto pass = each(VolumeLayout::Separate, 1, pixel, {});
-    const auto rectified = each(VolumeLayout::Separate, 128, scene, {});
-    const auto rectifiedAtOnce = each(VolumeLayout::Tiled, 128, scene, {});
-    const auto naive = each(VolumeLayout::Separate, 128, scene, {&source, 1});
-    const auto atOnce = each(VolumeLayout::Tiled, 128, scene, {&source, 1});
-    std::printf("\n| us per volume of %u | pass alone | naive | one pass for all | saved | most "
-                "that passes can save |\n|---|---|---|---|---|---|\n",
+/// What a pass costs without work: volumes of one texel, maps of 16, a picture of one pixel, no
+/// triangles. That is all that one pass for all lights can save, against the work of a light.
+void printProfile(const Device& device, const Scene& scene, const Scene& pixel, Sources sources,
+                  std::uint32_t lights) {
+    AreaLightDesc desc;
+    desc.virtualLights = lights;
+    desc.maps = ShadowMaps::Rendered;
+    desc.layout = VolumeLayout::Separate;
+    const Stages work = measureStages(device, desc, scene, pixel, sources, 2);
+    desc.voxels = {1, 1, 128};
+    desc.mapTexels = 4;
+    const Stages pass = measureStages(device, desc, pixel, pixel, {}, 6);
+    std::printf("\n| us a light, of %u naive ones | its pass without work | all | most that fewer "
+                "passes save |\n|---|---|---|---|\n",
                 lights);
-    const auto row = [](const char* name, double alone, double separate, double together) {
-        std::printf("| %s | %.1f | %.1f | %.1f | %.2fx | %.2fx |\n", name, alone, separate,
-                    together, separate / together, separate / std::max(separate - alone, 1e-3));
+    const auto row = [&](const char* name, double alone, double all) {
+        std::printf("| %s | %.1f | %.1f | %.2fx |\n", name, 1e3 * alone / lights,
+                    1e3 * all / lights, all / std::max(all - alone, 1e-6));
     };
-    const auto voxelize = AreaLightStage::Voxelize;
-    row("clear a map and rectify it", at(pass, voxelize), at(rectified, voxelize),
-        at(rectifiedAtOnce, voxelize));
-    row("draw a map of the triangles", 0.0, at(naive, voxelize) - at(rectified, voxelize),
-        at(atOnce, voxelize) - at(rectifiedAtOnce, voxelize));
-    row("scan", at(pass, AreaLightStage::Scan), at(naive, AreaLightStage::Scan),
-        at(atOnce, AreaLightStage::Scan));
-    row("gather", at(pass, AreaLightStage::Gather), at(naive, AreaLightStage::Gather),
-        at(atOnce, AreaLightStage::Gather));
+    row("shadow map", pass.maps, work.maps);
+    row("voxelize", pass.voxelize, work.voxelize);
+    row("scan", pass.scan, work.scan);
+    row("gather", pass.gather, work.gather);
+    std::fflush(stdout);
 }
 
 void printGatherTable(const Device& device, const Scene& scene, const GeometrySource& source,
@@ -201,7 +249,7 @@ void printGatherTable(const Device& device, const Scene& scene, const GeometrySo
         desc.gather = way.gather;
         desc.airlight = way.airlight;
         desc.interpolate = way.interpolate;
-        const AreaLightTimes times = measure(device, desc, scene, {&source, 1}, 2);
+        const AreaLightTimes times = measure(device, desc, scene, Sources(&source, 1), 2);
         const double sum = at(times, AreaLightStage::Gather) + at(times, AreaLightStage::Composite);
         full = full == 0.0 ? sum : full;
         std::printf("| %s | %.1f | %.1f | %.2f |\n", way.name, at(times, AreaLightStage::Gather),
@@ -247,8 +295,8 @@ int main(int argc, char** argv) {
                     device.info().isSoftware ? " [software: runs on the CPU]" : "",
                     loaded->triangles.size(), size.x, size.y);
         const Scene pixel(gl, loaded->bounds(), glm::uvec2(1));
-        printProfile(device, scene, pixel, source, isQuick ? 4 : 64);
-        printNaiveTable(device, scene, source, isQuick ? 4 : 256);
+        printProfile(device, scene, pixel, {&source, 1}, isQuick ? 4 : 64);
+        printNaiveTable(device, scene, pixel, {&source, 1}, isQuick ? 4 : 256);
         printGatherTable(device, scene, source, isQuick ? 9 : 128);
     }
     return 0;

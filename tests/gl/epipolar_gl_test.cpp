@@ -153,8 +153,9 @@ TEST_F(EpipolarGlTest, TwoStepsEqualOne) {
     auto buffers = MeshBuffers::upload(device(), mScene).value();
     const GeometrySource source = buffers.view();
     auto voxelizer = EpipolarVoxelizer::create(device(), {.depthMapTexels = 512}).value();
-    for (const glm::uvec3& size : {glm::uvec3(100, 37, 130), glm::uvec3(513, 20, 128),
-                                   glm::uvec3(2048, 5, 60), glm::uvec3(1, 1, 1)})
+    for (const glm::uvec3& size :
+         {glm::uvec3(100, 37, 130), glm::uvec3(513, 20, 128), glm::uvec3(2048, 5, 60),
+          glm::uvec3(512, 9, 64), glm::uvec3(33, 6, 129), glm::uvec3(1, 1, 1)})
         for (const std::uint32_t bitsPerTexel : {127u, 128u}) {
             const auto transform =
                 EpipolarTransform::fit(kFront, pointLight({0.6, 2.2, -2.6}), size).value();
