@@ -132,6 +132,7 @@ TEST(VirtualLights, UnsoundSourcesAreRefused) {
     EXPECT_NE(text(RectangleLight{{}, {1, 0, 0}, {2, 0, 0}, {}}).find("some area"),
               std::string::npos);
     EXPECT_NE(text(DiskLight{{}, {}, 1.0}).find("normal"), std::string::npos);
+    EXPECT_NE(text(PointLight{{}, glm::vec3(-1.0f)}).find("at least 0"), std::string::npos);
     EXPECT_NE(text(SphereLight{{}, -1.0}).find("radius"), std::string::npos);
     EXPECT_NE(text(EnvironmentLight{}).find("luminances"), std::string::npos);
     RectangleLight dark;
