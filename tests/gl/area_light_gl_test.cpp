@@ -7,7 +7,7 @@
 #include <lamina/gl/shaders.hpp>
 
 #include <reference/epipolar_agreement.hpp>
-#include <reference/fog.hpp>
+#include <reference/fog_errors.hpp>
 
 #include <glm/geometric.hpp>
 
@@ -18,8 +18,8 @@ namespace lamina {
 namespace {
 
 using reference::FogRay;
+using reference::relativeRmse;
 using test::FogScene;
-using test::relativeRmse;
 
 /// A television behind the fence, off the screen's upper edge, tilted down a little.
 RectangleLight television() {

@@ -33,7 +33,7 @@ double scattered(const VirtualLight& light, const Medium& medium, const glm::dve
 
 } // namespace
 
-FogRay marchFog(const ShadowRays* rays, const VirtualLight& light, const Medium& medium,
+FogRay marchFog(const Visibility& visibility, const VirtualLight& light, const Medium& medium,
                 const glm::dvec3& eye, const glm::dvec3& point, std::uint32_t steps) {
     const double length = glm::distance(eye, point);
     const glm::dvec3 along = (point - eye) / length;
@@ -65,13 +65,20 @@ FogRay marchFog(const ShadowRays* rays, const VirtualLight& light, const Medium&
         const glm::dvec3 at = eye + t * along;
         const double density = width * scattered(light, medium, eye, at);
         ray.unshadowed += density;
-        if (!rays || rays->lit(light.light, at)) {
-            ray.airlight += density;
-            visible += isDirectional ? width / length : 1.0 / steps;
-        }
+        const double lit = visibility ? visibility(at) : 1.0;
+        ray.airlight += lit * density;
+        visible += lit * (isDirectional ? width / length : 1.0 / steps);
     }
     ray.meanVisibility = visible;
     return ray;
+}
+
+FogRay marchFog(const ShadowRays* rays, const VirtualLight& light, const Medium& medium,
+                const glm::dvec3& eye, const glm::dvec3& point, std::uint32_t steps) {
+    Visibility visibility;
+    if (rays)
+        visibility = [&](const glm::dvec3& at) { return rays->lit(light.light, at) ? 1.0 : 0.0; };
+    return marchFog(visibility, light, medium, eye, point, steps);
 }
 
 FogRay marchFog(const ShadowRays* rays, std::span<const VirtualLight> lights, const Medium& medium,

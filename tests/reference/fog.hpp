@@ -5,6 +5,7 @@
 #include <lamina/area_light/virtual_lights.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 /// Single scattering in homogeneous media by ray marching and shadow rays, in double precision.
@@ -20,8 +21,16 @@ struct FogRay {
     [[nodiscard]] double factored() const { return meanVisibility * unshadowed; }
 };
 
+/// The lit share of a point; empty: nothing casts shadows.
+using Visibility = std::function<double(const glm::dvec3& point)>;
+
 /// Marches from `eye` to `point` by `steps` midpoints, in equal angles around the light's closest
-/// approach (directional: by equal shares of the extinction). rays: null: nothing casts shadows.
+/// approach (directional: by equal shares of the extinction).
+[[nodiscard]] FogRay marchFog(const Visibility& visibility, const VirtualLight& light,
+                              const Medium& medium, const glm::dvec3& eye, const glm::dvec3& point,
+                              std::uint32_t steps);
+
+/// The same with the visibility of ray casting. rays: null: nothing casts shadows.
 [[nodiscard]] FogRay marchFog(const ShadowRays* rays, const VirtualLight& light,
                               const Medium& medium, const glm::dvec3& eye, const glm::dvec3& point,
                               std::uint32_t steps);

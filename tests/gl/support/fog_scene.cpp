@@ -86,14 +86,4 @@ std::vector<glm::vec4> FogScene::read(GLuint texture) const {
     return texels;
 }
 
-double relativeRmse(const std::vector<double>& found, const std::vector<double>& expected) {
-    double differences = 0.0;
-    double values = 0.0;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        differences += (found[i] - expected[i]) * (found[i] - expected[i]);
-        values += expected[i] * expected[i];
-    }
-    return std::sqrt(differences / values);
-}
-
 } // namespace lamina::test

@@ -46,8 +46,4 @@ private:
     GLuint mNormal = 0;
 };
 
-/// Root of the mean square of differences over that of the expected values.
-[[nodiscard]] double relativeRmse(const std::vector<double>& found,
-                                  const std::vector<double>& expected);
-
 } // namespace lamina::test
