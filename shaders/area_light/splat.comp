@@ -49,44 +49,21 @@ void main() {
     float stride = float(laminaSplat.counts.y) / float(perMap);
     uint index = min(uint((float(slot) + laminaRandom(slot * 1024u + map)) * stride), laminaSplat.counts.y - 1u);
     LaminaPointSample point = laminaPoints[index];
-    float radius = point.position.w * laminaSplat.numbers.x * LAMINA_SPLAT_OVERLAP;
+    float radius = point.position.w * laminaSplat.numbers.x;
     if (radius == 0.0)
         return;
 
-    // In the frame of the map the disk is an ellipse for directional lights; u and v span it.
+    // A disk in the plane of the triangle; or, where the triangle is larger than that, an ellipse, the disk of an
+    // equilateral triangle of that area brought to its shape: disks, cut off by a long thin triangle, would leave
+    // most of it bare. In the frame of the map, where u and v span it.
+    bool isClipped = point.normal.w > 3.14159265 * radius * radius;
+    radius *= isClipped ? LAMINA_SPLAT_OVERLAP : LAMINA_SPLAT_OVERLAP_SMALL;
     vec3 normal = point.normal.xyz;
     vec3 other = abs(normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
     vec3 tangent = normalize(cross(other, normal));
     vec3 center = toMap(map, point.position.xyz);
     vec3 u = toMap(map, point.position.xyz + radius * tangent) - center;
     vec3 v = toMap(map, point.position.xyz + radius * cross(normal, tangent)) - center;
-    vec3 across = cross(u, v);
-
-    int side = int(laminaSplat.counts.x);
-    float perUnit = 0.5 * float(side);
-#if LAMINA_SPLAT_DIRECTIONAL
-    vec2 place = center.xy;
-    vec2 reach = perUnit * vec2(length(vec2(u.x, v.x)), length(vec2(u.y, v.y)));
-    if (center.z < 0.0)
-        return;
-#else
-    float distance = length(center);
-    if (center.z <= 0.0)
-        return;
-    vec2 place = laminaHemisphereToSquare(center);
-    // The map spreads an angle by 0.7 to 2, mostly by 1 to 1.4.
-    vec2 reach = vec2(perUnit * 1.5 * radius / distance);
-#endif
-    reach = min(reach, vec2(LAMINA_SPLAT_MOST_TEXELS));
-    vec2 middle = (place * 0.5 + 0.5) * float(side);
-    ivec2 low = max(ivec2(floor(middle - reach)), ivec2(0));
-    ivec2 high = min(ivec2(floor(middle + reach)), ivec2(side - 1));
-    // Rows that take an offset in the disk's plane to coordinates of the disk, and of the triangle.
-    float scale = 1.0 / dot(across, across);
-    vec3 toU = scale * cross(v, across);
-    vec3 toV = scale * cross(across, u);
-    float share = 3.14159265 * radius * radius / (LAMINA_SPLAT_OVERLAP * LAMINA_SPLAT_OVERLAP);
-    bool isClipped = point.normal.w > share;
     vec3 first = vec3(0.0);
     vec3 toB = vec3(0.0);
     vec3 toC = vec3(0.0);
@@ -98,7 +75,39 @@ void main() {
         float edgeScale = 1.0 / dot(plane, plane);
         toB = edgeScale * cross(edgeC, plane);
         toC = edgeScale * cross(plane, edgeB);
+        // The equilateral triangle's edge squared is 4 / sqrt(3) times its area.
+        float part = radius * sqrt(0.4330127 / point.normal.w);
+        u = part * edgeB;
+        v = part * (2.0 * edgeC - edgeB) * 0.5773503;
     }
+    vec3 across = cross(u, v);
+
+    int side = int(laminaSplat.counts.x);
+    float perUnit = 0.5 * float(side);
+#if LAMINA_SPLAT_DIRECTIONAL
+    vec2 place = center.xy;
+    vec2 reach = perUnit * vec2(length(vec2(u.x, v.x)), length(vec2(u.y, v.y)));
+    if (center.z < 0.0)
+        return;
+#else
+    if (center.z <= 0.0)
+        return;
+    vec2 place = laminaHemisphereToSquare(center);
+    vec2 toEnd = abs(laminaHemisphereToSquare(center + u) - place);
+    vec2 toSide = abs(laminaHemisphereToSquare(center + v) - place);
+    // The map is not linear; some more makes up for that.
+    vec2 reach = 1.25 * perUnit * sqrt(toEnd * toEnd + toSide * toSide);
+    if (min(center.z + u.z, center.z + v.z) <= 0.0)
+        reach = vec2(float(LAMINA_SPLAT_MOST_TEXELS));
+#endif
+    reach = min(reach, vec2(LAMINA_SPLAT_MOST_TEXELS));
+    vec2 middle = (place * 0.5 + 0.5) * float(side);
+    ivec2 low = max(ivec2(floor(middle - reach)), ivec2(0));
+    ivec2 high = min(ivec2(floor(middle + reach)), ivec2(side - 1));
+    // Rows that take an offset in the disk's plane to coordinates of the disk, and of the triangle.
+    float scale = 1.0 / dot(across, across);
+    vec3 toU = scale * cross(v, across);
+    vec3 toV = scale * cross(across, u);
     float above = dot(across, center);
     for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {

@@ -73,11 +73,25 @@ void laminaWeighWord(LaminaAirlightRay ray, uvec2 words, vec2 shares, float insi
     }
 }
 
+// The sample from which on the eye ray of a texel is shadowed up to sample `end`, by what its own ray meets
+// there: a sample stands for its voxel's centre, which lies behind a surface that the ray seen reaches.
+// Where that surface is lit, so is the medium before it.
+int laminaShadowedEnd(int vsv, ivec2 at, int end) {
+    int bitsPerTexel = int(laminaEpipolarSpaces[vsv].tile.z);
+    for (int group = (end - 1) / bitsPerTexel; group >= 0; --group) {
+        int first = group * bitsPerTexel;
+        int last = laminaEpipolarLastClearBelow(laminaEpipolarBits(vsv, at, group), min(end - first, bitsPerTexel));
+        if (last >= 0)
+            return first + last + 1;
+    }
+    return 0;
+}
+
 // The shadowed share in [0,1] of the airlight between the eye and phi coordinate `end` (samples): of all
 // samples alike (the paper's factored average), or each group of samples by its part in the unshadowed
 // airlight, which makes the product of both the integral of the voxelized visibility.
-// at: texel; shares: of it and of its neighbour in theta.
-float laminaShadowedShare(int vsv, LaminaAirlightRay ray, ivec2 at, vec2 shares, float end) {
+// at: texel; shares: of it and of its neighbour in theta. ends: samples from which on they count as lit.
+float laminaShadowedShare(int vsv, LaminaAirlightRay ray, ivec2 at, vec2 shares, float end, ivec2 ends) {
     int bitsPerTexel = int(laminaEpipolarSpaces[vsv].tile.z);
     float phiStep = 1.0 / laminaEpipolarSpaces[vsv].scale.z;
     float phiZero = laminaEpipolarSpaces[vsv].origin.z;
@@ -88,7 +102,9 @@ float laminaShadowedShare(int vsv, LaminaAirlightRay ray, ivec2 at, vec2 shares,
     for (int group = 0; group < groups; ++group) {
         float first = float(group * bitsPerTexel);
         uvec4 low = laminaEpipolarBits(vsv, at, group);
+        low &= laminaMaskBelow(ends.x - group * bitsPerTexel);
         uvec4 high = isInterpolated ? laminaEpipolarBits(vsv, at + ivec2(0, 1), group) : low;
+        high &= laminaMaskBelow(ends.y - group * bitsPerTexel);
         float inside = min(end - first, float(bitsPerTexel));
         uvec4 set = low | high;
         if (group == 0 && groups == 1 && (set.x | set.y | set.z | set.w) == 0u)
@@ -152,6 +168,17 @@ bool laminaIsInterpolated() {
     return (laminaAreaLight.counts.y & LAMINA_AREA_LIGHT_INTERPOLATE) != 0u;
 }
 
+// The lit share in [0,1] of the surface point that the ray ends at, with the grid's biases.
+float laminaSurfaceVisibility(int vsv, LaminaLightRay ray) {
+    if (ray.isRuled)
+        return float(ray.isLit);
+    vec3 size = vec3(laminaEpipolarSpaces[vsv].size.xyz);
+    vec3 place = ray.place + laminaEpipolarSpaces[vsv].bias.xyz;
+    place = vec3(clamp(place.x, 0.0, size.x), place.y, clamp(place.z, 0.0, size.z));
+    return laminaIsInterpolated() ? laminaEpipolarLitInterpolatedAt(vsv, place)
+                                  : float(!laminaEpipolarVoxelShadowed(vsv, ivec3(floor(place))));
+}
+
 float laminaAirlightVisibility(int vsv, LaminaLightRay ray) {
     if (ray.isRuled)
         return float(ray.isLit);
@@ -162,7 +189,12 @@ float laminaAirlightVisibility(int vsv, LaminaLightRay ray) {
     float theta = isInterpolated ? ray.place.y - 0.5 : ray.place.y;
     float low = floor(theta);
     float share = isInterpolated ? theta - low : 0.0;
-    return 1.0 - laminaShadowedShare(vsv, ray.air, ivec2(alpha, low), vec2(1.0 - share, share), end);
+    ivec2 at = ivec2(alpha, low);
+    int samples = int(ceil(end));
+    ivec2 ends = ivec2(laminaShadowedEnd(vsv, at, samples), laminaShadowedEnd(vsv, at + ivec2(0, 1), samples));
+    if (ends == ivec2(samples) || laminaSurfaceVisibility(vsv, ray) < 0.5)
+        ends = ivec2(samples);
+    return 1.0 - laminaShadowedShare(vsv, ray.air, at, vec2(1.0 - share, share), end, ends);
 }
 
 // Airlight of one light between the eye and `world`, shadowed. RGB radiance.
@@ -173,17 +205,6 @@ vec3 laminaAirlight(int light, int vsv, LaminaLightRay ray) {
 
 vec3 laminaAirlight(int light, int vsv, vec3 world) {
     return laminaAirlight(light, vsv, laminaLightRay(light, vsv, world));
-}
-
-// The lit share in [0,1] of the surface point that the ray ends at, with the grid's biases.
-float laminaSurfaceVisibility(int vsv, LaminaLightRay ray) {
-    if (ray.isRuled)
-        return float(ray.isLit);
-    vec3 size = vec3(laminaEpipolarSpaces[vsv].size.xyz);
-    vec3 place = ray.place + laminaEpipolarSpaces[vsv].bias.xyz;
-    place = vec3(clamp(place.x, 0.0, size.x), place.y, clamp(place.z, 0.0, size.z));
-    return laminaIsInterpolated() ? laminaEpipolarLitInterpolatedAt(vsv, place)
-                                  : float(!laminaEpipolarVoxelShadowed(vsv, ivec3(floor(place))));
 }
 
 // Irradiance that one light brings to a surface at right angles to `toLight`, attenuated by the medium and

@@ -73,6 +73,14 @@ int laminaEpipolarCountBelow(uvec4 bits, int count) {
     return laminaBitCount(bits & laminaMaskBelow(count));
 }
 
+// Index of the last bit not set below `count` (clamped to [0, 128]); -1 for none.
+int laminaEpipolarLastClearBelow(uvec4 bits, int count) {
+    uvec4 clear = ~bits & laminaMaskBelow(count);
+    if ((clear.z | clear.w) != 0u)
+        return clear.w != 0u ? 96 + findMSB(clear.w) : 64 + findMSB(clear.z);
+    return clear.y != 0u ? 32 + findMSB(clear.y) : findMSB(clear.x);
+}
+
 // Is a voxel shadowed? Clamped to the volume.
 bool laminaEpipolarVoxelShadowed(int vsv, ivec3 voxel) {
     int bitsPerTexel = int(laminaEpipolarSpaces[vsv].tile.z);

@@ -29,6 +29,8 @@
 // Enlargement of disks beyond the area that they stand for: disks of just that area, at random places, would
 // leave a third of the surface bare.
 #define LAMINA_SPLAT_OVERLAP 2.0
+// The same for disks that reach beyond their triangles, which may have no neighbours to cover: leaves.
+#define LAMINA_SPLAT_OVERLAP_SMALL 1.4
 
 // A texel without a surface: the bits of the largest float.
 #define LAMINA_SPLAT_EMPTY 0x7f7fffffu
