@@ -33,6 +33,7 @@ void main() {
     vec3 world = laminaSeenPoint(seen, isSky);
     bool isShaded = laminaHas(LAMINA_AREA_LIGHT_HAS_NORMALS) && !isSky;
     vec3 normal = isShaded ? laminaSeenNormal(seen) : vec3(0.0);
+    vec3 plane = isShaded || isSky ? normal : laminaSeenPlane(seen, world);
     vec3 toViewer = laminaTowardsViewer(laminaView, world);
 
     // A run of a low-discrepancy sequence is well spread; every ninth of its points need not be.
@@ -44,7 +45,7 @@ void main() {
     for (int light = first; light < end; ++light) {
         if (laminaVirtualLights[light].intensity.rgb == vec3(0.0))
             continue;
-        LaminaLightRay ray = laminaLightRay(light, light + toVolume, world);
+        LaminaLightRay ray = laminaLightRay(light, light + toVolume, world, plane);
         airlight += laminaAirlight(light, light + toVolume, ray);
         if (isShaded) {
             vec3 toLight;

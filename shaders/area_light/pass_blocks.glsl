@@ -36,3 +36,19 @@ vec3 laminaSeenNormal(ivec2 pixel) {
     float square = dot(normal, normal);
     return square > 0.0 ? normal * inversesqrt(square) : normal;
 }
+
+// A vector at right angles to the surface that a pixel shows, by the points of its neighbours; of any length.
+vec3 laminaSeenPlane(ivec2 pixel, vec3 world) {
+    ivec2 last = ivec2(laminaView.size.xy) - 1;
+    vec3 steps[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        ivec2 offset = ivec2(1 - axis, axis);
+        bool isSky;
+        vec3 before = laminaSeenPoint(max(pixel - offset, ivec2(0)), isSky) - world;
+        vec3 after = laminaSeenPoint(min(pixel + offset, last), isSky) - world;
+        // The nearer of the two is on the same surface, if one is.
+        vec2 squares = vec2(dot(before, before), dot(after, after));
+        steps[axis] = squares.y == 0.0 || (squares.x > 0.0 && squares.x < squares.y) ? -before : after;
+    }
+    return cross(steps[0], steps[1]);
+}

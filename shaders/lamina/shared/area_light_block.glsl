@@ -9,6 +9,9 @@
 // Phi samples that share a weight in the weighted airlight; divides 32.
 #define LAMINA_AIRLIGHT_BITS_PER_WEIGHT 8
 
+// Phi samples before a surface that its own shadow may reach.
+#define LAMINA_AIRLIGHT_OWN_SHADOW 3
+
 // Half the nodes of the quadrature of unshadowed airlight.
 #define LAMINA_AIRLIGHT_NODE_PAIRS 6
 
