@@ -2,18 +2,22 @@
 // resolutions. Prints Markdown.
 //
 //   lamina_area_light_accuracy [--quick] [--context=auto|egl|osmesa] [--pixels=N] [--scene=NAME]
-//                              [--part=causes|sizes]
+//                              [--part=causes|times|sizes|picture]
 //
-// N pixels a side are compared; a picture of 256 x 256 pixels, thinned out.
+// N pixels a side are compared; a picture of 256 x 256 pixels, thinned out. "picture" writes
+// fog_NAME.pgm to the working directory.
 
 #include "gl/device_state.hpp"
 #include "gl/support/fog_trial.hpp"
 
 #include <lamina/headless/context.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -39,14 +43,15 @@ struct Options {
 };
 
 void printRow(const char* what, const FogErrors& errors) {
-    std::printf("| %s | %.2f %% | %.1f %% | |\n", what, 100.0 * errors.airlight,
-                100.0 * errors.strength);
+    std::printf("| %s | %.2f %% | %.1f %% (%+.1f %%) | |\n", what, 100.0 * errors.airlight,
+                100.0 * errors.strength, 100.0 * errors.bias);
     std::fflush(stdout);
 }
 
 void printRow(const char* what, const FogTrial::Errors& errors) {
-    std::printf("| %s | %.2f %% | %.1f %% | %.2f %% |\n", what, 100.0 * errors.truth.airlight,
-                100.0 * errors.truth.strength, 100.0 * errors.factored);
+    std::printf("| %s | %.2f %% | %.1f %% (%+.1f %%) | %.2f %% |\n", what,
+                100.0 * errors.truth.airlight, 100.0 * errors.truth.strength,
+                100.0 * errors.truth.bias, 100.0 * errors.factored);
     std::fflush(stdout);
 }
 
@@ -57,7 +62,8 @@ void printCauses(const Device& device, const GladGLContext& gl, const reference:
     AreaLightDesc desc;
     desc.virtualLights = lights;
     std::printf("\n%s: %u virtual lights, 128-cubed volumes, %zu of %u x %u pixels\n\n"
-                "| | airlight, RMSE | strength of the shadow | airlight against factored rays |\n"
+                "| | airlight, RMSE | strength of the shadow (with its sign) | airlight against "
+                "factored rays |\n"
                 "|---|---|---|---|\n",
                 study.name, lights, trial.pixels().size(), options.pixels, options.pixels);
     desc.maps = ShadowMaps::Imperfect;
@@ -68,8 +74,6 @@ void printCauses(const Device& device, const GladGLContext& gl, const reference:
     printRow("drawn maps, factored", trial.gather(desc));
     desc.airlight = AirlightForm::Weighted;
     printRow("drawn maps", trial.gather(desc));
-    if (std::getenv("FT_SHORT"))
-        return;
     desc.interpolate = false;
     printRow("drawn maps, not interpolated", trial.gather(desc));
     desc.interpolate = true;
@@ -130,6 +134,39 @@ void printTimes(const Device& device, const GladGLContext& gl, const reference::
     std::fflush(stdout);
 }
 
+/// PGM: ours, ray casting, and four times their difference around gray ([WD13] figure 12).
+void writePicture(const Device& device, const GladGLContext& gl, const reference::FogStudy& study,
+                  const Options& options) {
+    FogTrial trial(device, gl, study, glm::uvec2(options.pixels), options.isQuick ? 16 : 256, 24);
+    AreaLightDesc desc;
+    desc.virtualLights = options.isQuick ? 16 : 256;
+    desc.maps = ShadowMaps::Rendered;
+    (void)trial.gather(desc);
+    double white = 0.0;
+    for (const double value : trial.truth())
+        white = std::max(white, value);
+    const std::size_t side = options.pixels;
+    std::vector<unsigned char> texels(3 * side * side, 0);
+    const auto gray = [&](double value) {
+        return static_cast<unsigned char>(255.0 * std::clamp(value / white, 0.0, 1.0));
+    };
+    for (std::size_t i = 0; i < trial.pixels().size(); ++i) {
+        const std::size_t pixel = trial.pixels()[i];
+        const std::size_t row = (side - 1 - pixel / side) * 3 * side + pixel % side;
+        const double found = trial.found()[i];
+        const double truth = trial.truth()[i];
+        texels[row] = gray(found);
+        texels[row + side] = gray(truth);
+        texels[row + 2 * side] = gray(0.5 * white + 4.0 * (found - truth));
+    }
+    const std::string path = std::string("fog_") + study.name + ".pgm";
+    std::ofstream out(path, std::ios::binary);
+    out << "P5 " << 3 * side << " " << side << " 255\n";
+    out.write(reinterpret_cast<const char*>(texels.data()),
+              static_cast<std::streamsize>(texels.size()));
+    std::printf("\n%s: %s\n", study.name, path.c_str());
+}
+
 bool parse(int argc, char** argv, Options& options) {
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
@@ -163,7 +200,7 @@ int main(int argc, char** argv) {
     if (!parse(argc, argv, options)) {
         std::fprintf(stderr, "usage: lamina_area_light_accuracy [--quick] "
                              "[--context=auto|egl|osmesa] [--pixels=N] [--scene=NAME] "
-                             "[--part=causes|sizes|times]\n");
+                             "[--part=causes|times|sizes|picture]\n");
         return 2;
     }
     headless::Context context = need(headless::Context::create(options.context));
@@ -183,6 +220,8 @@ int main(int argc, char** argv) {
             printTimes(device, gl, study, options);
         if (isWanted("sizes"))
             printSizes(device, gl, study, options);
+        if (options.part == "picture")
+            writePicture(device, gl, study, options);
     }
     return 0;
 }

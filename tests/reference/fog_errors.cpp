@@ -27,10 +27,14 @@ FogErrors fogErrors(std::span<const double> found, std::span<const double> expec
         const double shadow = unshadowed[i] - expected[i];
         if (shadow <= 0.02 * unshadowed[i])
             continue;
-        errors.strength += std::abs((unshadowed[i] - found[i]) / shadow - 1.0);
+        const double error = (unshadowed[i] - found[i]) / shadow - 1.0;
+        errors.strength += std::abs(error);
+        errors.bias += error;
         ++errors.shadows;
     }
-    errors.strength /= static_cast<double>(std::max<std::size_t>(errors.shadows, 1));
+    const auto count = static_cast<double>(std::max<std::size_t>(errors.shadows, 1));
+    errors.strength /= count;
+    errors.bias /= count;
     return errors;
 }
 

@@ -12,6 +12,7 @@ namespace lamina::reference {
 struct FogErrors {
     double airlight = 0.0;   ///< Root mean square error over root mean square.
     double strength = 0.0;   ///< Of the shadow, relative: mean where it takes more than 2 %.
+    double bias = 0.0;       ///< Mean of the same with its sign: above 0, too dark.
     std::size_t shadows = 0; ///< Pixels where it does.
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace lamina::reference {
 namespace {
@@ -20,6 +21,17 @@ bool reaches(const ShadowRays& rays, const EpipolarTransform& volume, double the
     const glm::dvec3 offset = light + distance * along - volume.eye();
     const double reached = glm::dot(offset, volume.axis());
     return std::atan2(glm::length(offset - reached * volume.axis()), reached) >= alpha;
+}
+
+/// Phi coordinate of the first surface that the eye sees.
+double firstPhi(const ShadowRays& rays, const EpipolarTransform& volume, double theta,
+                double alpha) {
+    const glm::dvec3 around = std::cos(theta) * volume.u() + std::sin(theta) * volume.v();
+    const glm::dvec3 along = std::cos(alpha) * volume.axis() + std::sin(alpha) * around;
+    const double distance = rays.firstHit(volume.eye(), along);
+    if (std::isinf(distance))
+        return distance;
+    return volume.worldToVoxel(volume.eye() + distance * along).z;
 }
 
 double snapped(double coordinate, bool isWhole) {
@@ -51,23 +63,35 @@ double marchVoxels(const ShadowRays& rays, const VirtualLight& light,
     // An eye ray has one alpha and one theta.
     const double alpha = origin.x + snapped(end.x, voxels.alpha) / scale.x;
     const Between theta = between(end.y, voxels, voxels.theta);
-    double lastPhi = -1.0;
-    double lastLit = 1.0;
-    const auto lit = [&](const glm::dvec3& at) {
-        const double phi = snapped(volume.worldToVoxel(at).z, voxels.phi);
-        if (phi == lastPhi)
-            return lastLit;
-        const auto one = [&](double place) {
-            return reaches(rays, volume, origin.y + place / scale.y, origin.z + phi / scale.z,
-                           alpha)
-                       ? 1.0
-                       : 0.0;
-        };
-        lastPhi = phi;
-        lastLit = (1.0 - theta.share) * one(theta.first);
-        if (theta.share > 0.0)
-            lastLit += theta.share * one(theta.second);
-        return lastLit;
+    std::vector<double> phis;
+    (void)marchFog(
+        [&](const glm::dvec3& at) {
+            phis.push_back(snapped(volume.worldToVoxel(at).z, voxels.phi));
+            return 1.0;
+        },
+        light, medium, volume.eye(), point, steps);
+    const auto litAt = [&](double row) {
+        const double angle = origin.y + row / scale.y;
+        std::vector<bool> lit;
+        for (std::size_t i = 0; i < phis.size(); ++i)
+            lit.push_back(i > 0 && phis[i] == phis[i - 1]
+                              ? lit.back()
+                              : reaches(rays, volume, angle, origin.z + phis[i] / scale.z, alpha));
+        // The shadow of the surface that the ray through the voxels' centres ends on.
+        const double surface = firstPhi(rays, volume, angle, alpha);
+        std::size_t begin = lit.size();
+        while (begin > 0 && !lit[begin - 1])
+            --begin;
+        if (begin < lit.size() && phis[begin] >= surface)
+            std::fill(lit.begin() + static_cast<std::ptrdiff_t>(begin), lit.end(), true);
+        return lit;
+    };
+    const std::vector<bool> first = litAt(theta.first);
+    const std::vector<bool> second = theta.share > 0.0 ? litAt(theta.second) : first;
+    std::size_t next = 0;
+    const auto lit = [&](const glm::dvec3&) {
+        const std::size_t i = next++;
+        return (first[i] ? 1.0 - theta.share : 0.0) + (second[i] ? theta.share : 0.0);
     };
     return marchFog(lit, light, medium, volume.eye(), point, steps).airlight;
 }

@@ -15,8 +15,9 @@ struct VoxelSteps {
     bool interpolate = true; ///< Linear in theta, between the centres of voxels.
 };
 
-/// The integral of marchFog() with the visibility that a volume without errors of its own has.
-/// light: a point light, that of `volume`; `point` is seen from the volume's eye.
+/// The integral of marchFog() with the visibility that a volume without errors of its own has;
+/// where the ray through the voxels' centres passes the first surface, it stays lit if it was so
+/// before. light: a point light, that of `volume`; `point` is seen from the volume's eye.
 [[nodiscard]] double marchVoxels(const ShadowRays& rays, const VirtualLight& light,
                                  const EpipolarTransform& volume, const Medium& medium,
                                  const glm::dvec3& point, std::uint32_t steps,

@@ -69,8 +69,8 @@ FogTrial::Errors FogTrial::gather(const AreaLightDesc& desc) {
     return errors;
 }
 
-FogErrors FogTrial::perfect(const reference::VoxelSteps& voxels) const {
-    const auto airlight = reference::forEach(mPixels.size(), [&](std::size_t i) {
+std::vector<double> FogTrial::perfectAirlight(const reference::VoxelSteps& voxels) const {
+    return reference::forEach(mPixels.size(), [&](std::size_t i) {
         double sum = 0.0;
         for (std::size_t light = 0; light < mVolumes.size(); ++light)
             sum += static_cast<double>(mVolumeLights[light].intensity.x) *
@@ -78,7 +78,10 @@ FogErrors FogTrial::perfect(const reference::VoxelSteps& voxels) const {
                                           mStudy.medium, mScene.point(mPixels[i]), mSteps, voxels);
         return sum;
     });
-    return reference::fogErrors(airlight, mTruth, mUnshadowed);
+}
+
+FogErrors FogTrial::perfect(const reference::VoxelSteps& voxels) const {
+    return reference::fogErrors(perfectAirlight(voxels), mTruth, mUnshadowed);
 }
 
 FogErrors FogTrial::factoring() const {

@@ -6,7 +6,6 @@
 #include <reference/fog_scenes.hpp>
 #include <reference/fog_voxels.hpp>
 
-#include <optional>
 #include <vector>
 
 namespace lamina::test {
@@ -29,9 +28,9 @@ public:
             0.0; ///< RMSE against mean visibility times unshadowed airlight, relative.
         AreaLightTimes times{}; ///< If the desc asks for them: the least of three frames.
     };
-    /// desc: its number of virtual lights counts only if there are others in the trial.
     [[nodiscard]] Errors gather(const AreaLightDesc& desc);
-    /// Of perfect volumes where the last gather's were.
+    /// Airlight of the pixels that count through perfect volumes where the last gather's were.
+    [[nodiscard]] std::vector<double> perfectAirlight(const reference::VoxelSteps& voxels) const;
     [[nodiscard]] reference::FogErrors perfect(const reference::VoxelSteps& voxels) const;
     /// Of mean visibility times unshadowed airlight by ray casting.
     [[nodiscard]] reference::FogErrors factoring() const;
