@@ -9,8 +9,8 @@
 // AreaLight::bind() fills the three.
 //
 //   vec3 sum = vec3(0.0);
-//   for (int i = 0; i < laminaVirtualLightCount(); ++i)
-//       sum += laminaAirlight(i, i, world);    // light i owns shadow volume i
+//   for (int i = 0; i < laminaVirtualLightCount(); ++i)    // light i owns shadow volume i
+//       sum += laminaAirlight(i, i, laminaLightRay(i, i, world, normal));
 //   color = color * laminaTransmittance(distance) + sum;
 //
 // Below, `light` is a virtual light, `vsv` its shadow volume, `world` the point that the eye sees.
@@ -32,6 +32,10 @@ layout(std430, binding = LAMINA_AREA_LIGHT_BLOCK_BINDING) readonly buffer Lamina
 
 int laminaVirtualLightCount() {
     return int(laminaAreaLight.counts.x);
+}
+
+bool laminaIsInterpolated() {
+    return (laminaAreaLight.counts.y & LAMINA_AREA_LIGHT_INTERPOLATE) != 0u;
 }
 
 // The share of light that a stretch of the medium lets through.
@@ -200,8 +204,10 @@ LaminaLightRay laminaLightRay(int light, int vsv, vec3 world) {
     return laminaLightRay(light, vsv, world, vec3(0.0));
 }
 
-bool laminaIsInterpolated() {
-    return (laminaAreaLight.counts.y & LAMINA_AREA_LIGHT_INTERPOLATE) != 0u;
+// Phi coordinates of the surface seen, on the rays through the centres of a texel and of its neighbour in theta.
+vec2 laminaPlanePhi(LaminaLightRay ray, ivec2 at) {
+    vec2 across = vec2(0.0, 1.0) + float(at.y) + 0.5 - ray.place.y;
+    return ray.place.z + ray.slope.x * (float(at.x) + 0.5 - ray.place.x) + ray.slope.y * across;
 }
 
 // The lit share in [0,1] of the surface point that the ray ends at, with the grid's biases.
@@ -226,8 +232,7 @@ float laminaAirlightVisibility(int vsv, LaminaLightRay ray) {
     float low = floor(theta);
     float share = isInterpolated ? theta - low : 0.0;
     ivec2 at = ivec2(alpha, low);
-    vec2 across = vec2(0.0, 1.0) + float(at.y) + 0.5 - ray.place.y;
-    vec2 surface = end + ray.slope.x * (alpha + 0.5 - ray.place.x) + ray.slope.y * across;
+    vec2 surface = laminaPlanePhi(ray, at);
     ivec2 ends = ivec2(laminaOwnShadow(vsv, at, end, surface.x), laminaOwnShadow(vsv, at + ivec2(0, 1), end, surface.y));
     return 1.0 - laminaShadowedShare(vsv, ray.air, at, vec2(1.0 - share, share), end, ends);
 }

@@ -99,10 +99,15 @@ FogRay marchFog(const ShadowRays* rays, std::span<const VirtualLight> lights, co
 double castIrradiance(const ShadowRays& rays, const VirtualLight& light, const Medium& medium,
                       const glm::dvec3& point, const glm::dvec3& normal, double lift) {
     const glm::dvec3 start = point + lift * normal;
+    return rays.lit(light.light, start) ? irradiance(light, medium, start, normal) : 0.0;
+}
+
+double irradiance(const VirtualLight& light, const Medium& medium, const glm::dvec3& point,
+                  const glm::dvec3& normal) {
     const bool isDirectional = light.light.kind == LightKind::Directional;
-    const glm::dvec3 offset = isDirectional ? -light.light.direction : light.light.position - start;
+    const glm::dvec3 offset = isDirectional ? -light.light.direction : light.light.position - point;
     const double cosine = glm::dot(normal, glm::normalize(offset));
-    if (cosine <= 0.0 || !rays.lit(light.light, start))
+    if (cosine <= 0.0)
         return 0.0;
     const double strength = static_cast<double>(light.intensity.x);
     if (isDirectional)

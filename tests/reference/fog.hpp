@@ -46,4 +46,8 @@ using Visibility = std::function<double(const glm::dvec3& point)>;
                                     const Medium& medium, const glm::dvec3& point,
                                     const glm::dvec3& normal, double lift);
 
+/// The same without shadows.
+[[nodiscard]] double irradiance(const VirtualLight& light, const Medium& medium,
+                                const glm::dvec3& point, const glm::dvec3& normal);
+
 } // namespace lamina::reference
