@@ -33,7 +33,7 @@ AreaLightDesc makeDesc(std::uint32_t lights, ShadowMaps maps) {
 TEST_F(AreaLightAccuracyGlTest, AgreesWithRayCastingInThreeScenes) {
     for (const FogStudy& study : mStudies) {
         SCOPED_TRACE(study.name);
-        FogTrial trial(device(), gl(), study, glm::uvec2(kPixels), 256, 32);
+        FogTrial trial(device(), gl(), study, glm::uvec2(16), 256, 64);
         for (const ShadowMaps maps : {ShadowMaps::Rendered, ShadowMaps::Imperfect}) {
             const bool isRendered = maps == ShadowMaps::Rendered;
             AreaLightDesc desc = makeDesc(256, maps);
@@ -71,6 +71,21 @@ TEST_F(AreaLightAccuracyGlTest, EveryStepIsAccountedFor) {
     EXPECT_LE(error, 0.004);
     // Without steps nothing is left.
     EXPECT_LE(trial.perfect({false, false, false, false}).airlight, 1e-3);
+}
+
+TEST_F(AreaLightAccuracyGlTest, DepthsTellPlanesWithoutNormals) {
+    for (const FogStudy& study : mStudies) {
+        FogTrial trial(device(), gl(), study, glm::uvec2(5 * kPixels), 24, 16);
+        const AreaLightDesc desc = makeDesc(24, ShadowMaps::Rendered);
+        const double with = trial.gather(desc, true).truth.bias;
+        const std::vector<double> found = trial.found();
+        const double without = trial.gather(desc, false).truth.bias;
+        const double apart = reference::relativeRmse(trial.found(), found);
+        std::printf("%-8s without normals %.2f %% apart, strength %+.1f %%, with %+.1f %%\n",
+                    study.name, 100.0 * apart, 100.0 * without, 100.0 * with);
+        EXPECT_LE(apart, 0.005);
+        EXPECT_LE(std::abs(without - with), 0.015);
+    }
 }
 
 TEST_F(AreaLightAccuracyGlTest, ErrorsFallWithLightsAndVoxels) {

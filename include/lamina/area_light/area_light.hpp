@@ -99,8 +99,10 @@ struct AreaLightDesc {
 
 /// The engine's textures that apply() reads, 2D, of the view's size, single-sampled.
 struct SurfaceTextures {
-    std::uint32_t depth = 0;      ///< A depth format, or a float one with window depths in red.
-    std::uint32_t normal = 0;     ///< World normals in RGB; 0: surfaces get no light from here.
+    std::uint32_t depth = 0; ///< A depth format, or a float one with window depths in red.
+    /// World normals in RGB; 0: surfaces get no light from here, and their planes, where the fog
+    /// ends, are taken from the depths.
+    std::uint32_t normal = 0;
     bool unsignedNormals = false; ///< Normals are stored as n / 2 + 1 / 2.
     std::uint32_t albedo = 0;     ///< Linear; 0: white.
     std::uint32_t color = 0; ///< Light of other sources that leaves the surfaces, linear; 0: black.

@@ -37,16 +37,18 @@ FogTrial::FogTrial(const Device& device, const GladGLContext& gl, const referenc
 
 FogTrial::~FogTrial() = default;
 
-FogTrial::Errors FogTrial::gather(const AreaLightDesc& desc) {
+FogTrial::Errors FogTrial::gather(const AreaLightDesc& desc, bool hasNormals) {
     AreaLight effect = AreaLight::create(mDevice, desc).value();
     const GeometrySource source = mBuffers.view();
+    SurfaceTextures surfaces = mScene.surfaces();
+    surfaces.normal = hasNormals ? surfaces.normal : 0;
     Errors errors;
     errors.times.fill(1e30);
     for (int frame = 0; frame < (desc.measure ? 4 : 1); ++frame) {
         const auto stats = effect.prepare(mScene.view(), mStudy.light, mStudy.medium, {&source, 1});
         if (!stats)
             throw std::runtime_error(stats.error().text);
-        const auto picture = effect.apply(mScene.view(), mScene.surfaces());
+        const auto picture = effect.apply(mScene.view(), surfaces);
         if (!picture)
             throw std::runtime_error(picture.error().text);
         mGl.Finish();

@@ -28,7 +28,8 @@ public:
             0.0; ///< RMSE against mean visibility times unshadowed airlight, relative.
         AreaLightTimes times{}; ///< If the desc asks for them: the least of three frames.
     };
-    [[nodiscard]] Errors gather(const AreaLightDesc& desc);
+    /// hasNormals: surfaces have a normal texture.
+    [[nodiscard]] Errors gather(const AreaLightDesc& desc, bool hasNormals = true);
     /// Airlight of the pixels that count through perfect volumes where the last gather's were.
     [[nodiscard]] std::vector<double> perfectAirlight(const reference::VoxelSteps& voxels) const;
     [[nodiscard]] reference::FogErrors perfect(const reference::VoxelSteps& voxels) const;
