@@ -123,10 +123,10 @@ Result<ShadowTopology> ShadowTopology::create(const Device& device, const Geomet
     for (const glm::uvec3& triangle : mesh.triangles)
         impl->vertexCount =
             std::max({impl->vertexCount, triangle.x + 1, triangle.y + 1, triangle.z + 1});
-    impl->isClosed = mesh.isClosed;
+    impl->openEdgeCount = mesh.openEdgeCount;
     impl->surface = surface;
     if (surface == CasterSurface::Automatic)
-        impl->surface = mesh.isClosed ? CasterSurface::Closed : CasterSurface::Sheet;
+        impl->surface = mesh.isClosed() ? CasterSurface::Closed : CasterSurface::Sheet;
     return ShadowTopology(std::move(impl));
 }
 
@@ -137,7 +137,7 @@ ShadowTopology& ShadowTopology::operator=(ShadowTopology&&) noexcept = default;
 ShadowTopology::~ShadowTopology() = default;
 
 bool ShadowTopology::isClosed() const {
-    return mImpl->isClosed;
+    return mImpl->triangleCount > 0 && mImpl->openEdgeCount == 0;
 }
 CasterSurface ShadowTopology::surface() const {
     return mImpl->surface;
@@ -147,6 +147,9 @@ std::uint32_t ShadowTopology::triangleCount() const {
 }
 std::uint32_t ShadowTopology::edgeCount() const {
     return mImpl->edgeCount;
+}
+std::uint32_t ShadowTopology::openEdgeCount() const {
+    return mImpl->openEdgeCount;
 }
 std::uint32_t ShadowTopology::vertexCount() const {
     return mImpl->vertexCount;

@@ -56,10 +56,10 @@ void appendEdges(std::span<const Side> sides, SilhouetteMesh& mesh) {
         append(sides[i], sides[forwardCount + i].opposite);
     if (2 * pairs == sides.size())
         return;
-    mesh.isClosed = false;
     const bool moreForward = forwardCount > pairs;
     std::size_t i = moreForward ? pairs : forwardCount + pairs;
     const std::size_t end = moreForward ? forwardCount : sides.size();
+    mesh.openEdgeCount += static_cast<std::uint32_t>((end - i + 1) / 2);
     for (; i + 1 < end; i += 2)
         append(sides[i], sides[i + 1].opposite);
     if (i < end)
@@ -89,7 +89,6 @@ SilhouetteMesh findSilhouetteMesh(std::span<const glm::vec3> positions,
         return std::tuple(a.low, a.high, !a.isForward, a.opposite) <
                std::tuple(b.low, b.high, !b.isForward, b.opposite);
     });
-    mesh.isClosed = !mesh.triangles.empty();
     mesh.edges.reserve(sides.size() / 2);
     for (auto begin = sides.begin(); begin != sides.end();) {
         const auto end = std::find_if(begin, sides.end(), [&](const Side& side) {

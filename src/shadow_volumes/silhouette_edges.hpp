@@ -17,8 +17,10 @@ struct SilhouetteMesh {
     /// d, c, b; d is b for an edge of one triangle. An edge of more than two triangles is there
     /// more than once, each triangle in one of them.
     std::vector<glm::uvec4> edges;
-    /// Every edge has as many triangles of one direction as of the other.
-    bool isClosed = false;
+    /// Edges of one triangle alone, or of two of one direction.
+    std::uint32_t openEdgeCount = 0;
+
+    [[nodiscard]] bool isClosed() const { return !triangles.empty() && openEdgeCount == 0; }
 };
 
 /// indices: three a triangle, each below positions.size(). Triangles that are degenerate or not

@@ -11,8 +11,8 @@ struct ShadowTopology::Impl {
     gl::Buffer edges;     ///< 32-bit indices, GL_LINES_ADJACENCY.
     std::uint32_t triangleCount = 0;
     std::uint32_t edgeCount = 0;
+    std::uint32_t openEdgeCount = 0;
     std::uint32_t vertexCount = 0;
-    bool isClosed = false;
     CasterSurface surface = CasterSurface::Closed;
 };
 

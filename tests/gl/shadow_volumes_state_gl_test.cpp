@@ -198,11 +198,34 @@ TEST_F(ShadowVolumesStateGlTest, TopologyFindsWhatIsClosed) {
     split.triangles.pop_back();
     const auto open = topology(split);
     EXPECT_FALSE(open.isClosed());
+    EXPECT_EQ(cube.openEdgeCount(), 0u);
+    EXPECT_EQ(open.openEdgeCount(), 3u);
     EXPECT_EQ(open.surface(), CasterSurface::Sheet);
     EXPECT_EQ(open.edgeCount(), 18u);
     TriangleMesh turned = reference::makeCube({0, 0, 0}, 1.0f);
     std::swap(turned.triangles[0].x, turned.triangles[0].y);
     EXPECT_FALSE(topology(turned).isClosed());
+    EXPECT_EQ(topology(turned).openEdgeCount(), 3u);
+    // Triangles that are degenerate or nowhere cast nothing, and open nothing.
+    TriangleMesh flawed = reference::makeCube({0, 0, 0}, 1.0f);
+    flawed.positions.emplace_back(0.0f);
+    flawed.triangles.emplace_back(0, 1, 1);
+    flawed.triangles.emplace_back(0, 1, 8);
+    flawed.positions[8].x = std::numeric_limits<float>::quiet_NaN();
+    const auto vertices = gl::createBuffer(device().state(), 9 * sizeof(glm::vec3),
+                                           flawed.positions.data(), 0, "test", "test");
+    const auto indices = gl::createBuffer(device().state(), 14 * sizeof(glm::uvec3),
+                                          flawed.triangles.data(), 0, "test", "test");
+    MeshView view;
+    view.vertexBuffer = vertices->id();
+    view.vertexCount = 9;
+    view.indexBuffer = indices->id();
+    view.indexType = IndexType::UInt32;
+    view.indexCount = 42;
+    const auto sound = ShadowTopology::create(device(), view).value();
+    EXPECT_TRUE(sound.isClosed());
+    EXPECT_EQ(sound.triangleCount(), 12u);
+    EXPECT_EQ(sound.vertexCount(), 8u);
     // Two cubes that share an edge: four triangles at it.
     const TriangleMesh pair = reference::merged(reference::makeBox({0, 0, 0}, {1, 1, 1}),
                                                 reference::makeBox({1, 1, 0}, {2, 2, 1}));

@@ -16,8 +16,11 @@ enum class CasterSurface : std::uint8_t {
     /// Triangles turned to the light. For closed meshes, counter-clockwise seen from outside, and
     /// lights outside of them. Where the mesh is not closed, back faces do not cast.
     Closed,
-    /// Both sides, whatever the winding: open and dirty meshes, lights inside. Costs about twice
-    /// the fill.
+    /// Both sides, whatever the winding: open and dirty meshes, lights inside. Open edges bound the
+    /// volume as silhouettes do, edges of many triangles, triangles that lie twice or are turned
+    /// over count as often as they are there: the shadow is that of the triangles. Where a vertex
+    /// of one triangle lies on an edge of another (a T-junction) single pixels along the shadow
+    /// of that edge may be wrong. Costs about twice the fill.
     Sheet
 };
 
@@ -49,6 +52,9 @@ public:
     [[nodiscard]] std::uint32_t triangleCount() const;
     /// Pairs of triangles, and triangles without another, at an edge.
     [[nodiscard]] std::uint32_t edgeCount() const;
+    /// Of these, the edges of one triangle alone, or of two that run along them in one direction:
+    /// holes, rims of sheets, triangles of the wrong winding. 0 for closed meshes.
+    [[nodiscard]] std::uint32_t openEdgeCount() const;
     /// Vertices that a MeshView with this topology must have.
     [[nodiscard]] std::uint32_t vertexCount() const;
     /// Bytes of GL memory held: 12 a triangle and 16 an edge.
