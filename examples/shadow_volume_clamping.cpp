@@ -2,32 +2,38 @@
 // casters under a low sun. Writes four pictures in one: the court with its shadows, and how often
 // each pixel's stencil is touched by plain, by culled and by culled and clamped shadow volumes.
 //
-//   shadow_volume_clamping OUT.png [WIDTH HEIGHT]      size of each of the four; 480 x 320
+//   shadow_volume_clamping OUT.png [--width PIXELS] [--height PIXELS] [--layers N] [--turn DEGREES]
 
 #include "support/check.hpp"
+#include "support/court.hpp"
+#include "support/engine_mesh.hpp"
 #include "support/host_gl.hpp"
-#include "support/shapes.hpp"
 
 #include <lamina/grid_io/image.hpp>
 #include <lamina/headless/context.hpp>
 #include <lamina/shadow_volumes/shadow_volumes.hpp>
 
+#include <CLI/CLI.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <cstring>
+#include <string>
 
 namespace {
 
 using example::check;
+using example::CourtThing;
+using example::EngineMesh;
 using example::HostGl;
-using lamina::TriangleMesh;
 
-const glm::dvec3 kToSun = glm::normalize(glm::dvec3(-1.0, 0.62, 0.18));
+struct Settings {
+    std::string file;
+    glm::uvec2 size{480, 320}; ///< Of each of the four pictures.
+    std::uint32_t layers = 48;
+    double turn = 0.0; ///< Of the sun about the court, degrees.
+};
 
 // The engine's own pass: what the sun gives each pixel if it is not in shadow, and what the sky
 // does.
@@ -56,101 +62,6 @@ void main() {
 }
 )";
 
-struct Thing {
-    TriangleMesh mesh;
-    glm::vec3 albedo;
-    bool casts = true;
-};
-
-void addBox(TriangleMesh& mesh, const glm::vec3& low, const glm::vec3& high) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.positions.emplace_back((i & 1u) ? high.x : low.x, (i & 2u) ? high.y : low.y,
-                                    (i & 4u) ? high.z : low.z);
-    for (const glm::uvec3& t : std::initializer_list<glm::uvec3>{{0, 2, 1},
-                                                                 {1, 2, 3},
-                                                                 {4, 5, 6},
-                                                                 {5, 7, 6},
-                                                                 {0, 4, 2},
-                                                                 {2, 4, 6},
-                                                                 {1, 3, 5},
-                                                                 {3, 7, 5},
-                                                                 {0, 1, 4},
-                                                                 {1, 5, 4},
-                                                                 {2, 6, 3},
-                                                                 {3, 6, 7}})
-        mesh.triangles.push_back(t + first);
-}
-
-Thing vase(const glm::vec3& at, float size, const glm::vec3& albedo) {
-    Thing thing{{}, albedo};
-    const std::vector<glm::vec2> profile{{0.0f, 0.0f},  {0.28f, 0.0f}, {0.22f, 0.08f},
-                                         {0.42f, 0.5f}, {0.40f, 0.7f}, {0.16f, 0.95f},
-                                         {0.24f, 1.1f}, {0.0f, 1.05f}};
-    example::addRevolved(thing.mesh, profile, 24,
-                         [&](const glm::vec3& p) { return at + size * p; });
-    return thing;
-}
-
-Thing ball(const glm::vec3& at, float size, const glm::vec3& albedo) {
-    Thing thing{{}, albedo};
-    example::addRevolved(thing.mesh, example::ballProfile(1.0f, 12), 24,
-                         [&](const glm::vec3& p) { return at + size * p; });
-    return thing;
-}
-
-/// A court, walled towards the sun: what stands in the wall's shadow casts nothing new.
-std::vector<Thing> makeScene() {
-    std::vector<Thing> things;
-    Thing court{{}, {0.72f, 0.66f, 0.56f}, false};
-    addBox(court.mesh, {-9.0f, -0.5f, -7.0f}, {9.0f, 0.0f, 7.0f});
-    things.push_back(court);
-    Thing wall{{}, {0.62f, 0.52f, 0.44f}};
-    addBox(wall.mesh, {-9.0f, 0.0f, -6.5f}, {-8.6f, 3.6f, 2.0f});
-    things.push_back(wall);
-    example::Random random(11);
-    constexpr std::array<glm::vec3, 3> kClay{glm::vec3(0.70f, 0.36f, 0.22f),
-                                             glm::vec3(0.46f, 0.50f, 0.52f),
-                                             glm::vec3(0.68f, 0.60f, 0.30f)};
-    for (int row = 0; row < 8; ++row)
-        for (int column = 0; column < 9; ++column) {
-            const float x = -7.6f + 1.9f * static_cast<float>(column) + random(-0.3f, 0.3f);
-            const float z = -6.0f + 1.6f * static_cast<float>(row) + random(-0.3f, 0.3f);
-            const glm::vec3& clay = kClay[static_cast<std::size_t>(row + column) % kClay.size()];
-            const float size = random(0.5f, 0.9f);
-            if ((row + column) % 2 == 0)
-                things.push_back(vase({x, 0.0f, z}, size, clay));
-            else
-                things.push_back(ball({x, 0.4f * size, z}, 0.4f * size, clay));
-        }
-    return things;
-}
-
-/// The engine's buffers of a thing.
-struct EngineMesh {
-    lamina::MeshView view;
-    GLuint vertexArray = 0;
-    glm::vec3 albedo;
-};
-
-EngineMesh upload(const HostGl& gl, const Thing& thing) {
-    EngineMesh made;
-    made.albedo = thing.albedo;
-    made.view.vertexBuffer =
-        example::makeBuffer(gl, std::as_bytes(std::span(thing.mesh.positions)));
-    made.view.vertexCount = static_cast<std::uint32_t>(thing.mesh.positions.size());
-    made.view.indexBuffer = example::makeBuffer(gl, std::as_bytes(std::span(thing.mesh.triangles)));
-    made.view.indexType = lamina::IndexType::UInt32;
-    made.view.indexCount = static_cast<std::uint32_t>(3 * thing.mesh.triangles.size());
-    gl.CreateVertexArrays(1, &made.vertexArray);
-    gl.VertexArrayVertexBuffer(made.vertexArray, 0, made.view.vertexBuffer, 0, sizeof(glm::vec3));
-    gl.VertexArrayElementBuffer(made.vertexArray, made.view.indexBuffer);
-    gl.EnableVertexArrayAttrib(made.vertexArray, 0);
-    gl.VertexArrayAttribFormat(made.vertexArray, 0, 3, GL_FLOAT, GL_FALSE, 0);
-    gl.VertexArrayAttribBinding(made.vertexArray, 0, 0);
-    return made;
-}
-
 /// The engine's frame before shadows.
 struct Frame {
     GLuint sun = 0, sky = 0, depth = 0;
@@ -164,7 +75,9 @@ GLuint makeTexture(const HostGl& gl, GLenum format, const glm::uvec2& size) {
     return texture;
 }
 
-Frame draw(const HostGl& gl, const std::vector<EngineMesh>& meshes, const lamina::View& view) {
+Frame draw(const HostGl& gl, const std::vector<CourtThing>& things,
+           const std::vector<EngineMesh>& meshes, const lamina::View& view,
+           const glm::dvec3& sunDirection) {
     const Frame frame{makeTexture(gl, GL_RGBA16F, view.size),
                       makeTexture(gl, GL_RGBA16F, view.size),
                       makeTexture(gl, GL_DEPTH_COMPONENT32F, view.size)};
@@ -187,14 +100,12 @@ Frame draw(const HostGl& gl, const std::vector<EngineMesh>& meshes, const lamina
         example::makeProgram(gl, {{GL_VERTEX_SHADER, kVertex}, {GL_FRAGMENT_SHADER, kFragment}});
     gl.UseProgram(program);
     const glm::mat4 worldToClip(view.worldToClip);
-    const glm::vec3 toSun(kToSun);
+    const glm::vec3 toSun(sunDirection);
     gl.ProgramUniformMatrix4fv(program, 0, 1, GL_FALSE, &worldToClip[0][0]);
     gl.ProgramUniform3fv(program, 2, 1, &toSun.x);
-    for (const EngineMesh& mesh : meshes) {
-        gl.ProgramUniform3fv(program, 1, 1, &mesh.albedo.x);
-        gl.BindVertexArray(mesh.vertexArray);
-        gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.view.indexCount), GL_UNSIGNED_INT,
-                        nullptr);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        gl.ProgramUniform3fv(program, 1, 1, &things[i].albedo.x);
+        example::draw(gl, meshes[i]);
     }
     return frame;
 }
@@ -230,7 +141,8 @@ void paste(lamina::Image& image, const std::vector<glm::vec3>& colors, const glm
         }
 }
 
-void run(const char* file, const glm::uvec2& size) {
+void run(const Settings& settings) {
+    const glm::uvec2 size = settings.size;
     lamina::headless::Context context = check(lamina::headless::Context::create());
     const auto load = [&](const char* name) { return context.getProcAddress(name); };
     const HostGl gl(load);
@@ -240,10 +152,10 @@ void run(const char* file, const glm::uvec2& size) {
     std::vector<lamina::ShadowTopology> topologies;
     std::vector<lamina::ShadowCaster> casters;
     std::vector<lamina::GeometrySource> receivers;
-    const std::vector<Thing> things = makeScene();
+    const std::vector<CourtThing> things = example::makeCourt();
     topologies.reserve(things.size()); // casters point to them
-    for (const Thing& thing : things) {
-        meshes.push_back(upload(gl, thing));
+    for (const CourtThing& thing : things) {
+        meshes.push_back(example::upload(gl, thing.mesh));
         receivers.emplace_back(meshes.back().view);
         if (!thing.casts)
             continue;
@@ -256,9 +168,12 @@ void run(const char* file, const glm::uvec2& size) {
     scene.view.worldToClip =
         glm::perspective(0.62, static_cast<double>(size.x) / size.y, 0.5, 80.0) *
         glm::lookAt(glm::dvec3(4.0, 6.5, 19.0), glm::dvec3(0.3, 0.3, -0.6), glm::dvec3(0, 1, 0));
-    const Frame frame = draw(gl, meshes, scene.view);
+    const glm::dmat4 turn =
+        glm::rotate(glm::dmat4(1.0), glm::radians(settings.turn), glm::dvec3(0, 1, 0));
+    const glm::dvec3 toSun(turn * glm::dvec4(glm::normalize(example::kCourtSun), 0.0));
+    const Frame frame = draw(gl, things, meshes, scene.view, toSun);
     scene.depthTexture = frame.depth;
-    scene.light = glm::dvec4(kToSun, 0.0);
+    scene.light = glm::dvec4(toSun, 0.0);
     scene.casters = casters;
     scene.receivers = receivers;
 
@@ -270,8 +185,8 @@ void run(const char* file, const glm::uvec2& size) {
     };
     const std::array<Step, 3> steps{
         Step{"plain", {.cullCasters = false, .clampLayers = false}},
-        Step{"culled", {.layers = 48, .lightMapTexels = 1024, .clampLayers = false}},
-        Step{"culled and clamped", {.layers = 48, .lightMapTexels = 1024}}};
+        Step{"culled", {.layers = settings.layers, .lightMapTexels = 1024, .clampLayers = false}},
+        Step{"culled and clamped", {.layers = settings.layers, .lightMapTexels = 1024}}};
     std::vector<float> light;
     float hottest = 1.0f;
     for (std::uint32_t i = 0; i < steps.size(); ++i) {
@@ -308,24 +223,28 @@ void run(const char* file, const glm::uvec2& size) {
         colors.push_back(
             glm::pow(glm::vec3(sky[i]) + light[i] * glm::vec3(sun[i]), glm::vec3(1.0f / 2.2f)));
     paste(image, colors, size, {0, 0});
-    check(lamina::writePng(file, image));
-}
-
-bool parse(const char* text, std::uint32_t& value) {
-    const char* end = text + std::strlen(text);
-    const auto [last, error] = std::from_chars(text, end, value);
-    return error == std::errc() && last == end && value >= 16 && value <= 4096;
+    check(lamina::writePng(settings.file, image));
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    glm::uvec2 size(480, 320);
-    if ((argc != 2 && argc != 4) ||
-        (argc == 4 && !(parse(argv[2], size.x) && parse(argv[3], size.y)))) {
-        std::fprintf(stderr, "usage: shadow_volume_clamping OUT.png [WIDTH HEIGHT]\n");
-        return 2;
-    }
-    run(argv[1], size);
+    Settings settings;
+    CLI::App app(
+        "Stencil shadows of a court, and how often they touch each pixel's stencil when plain, "
+        "culled, and culled and clamped.");
+    app.add_option("file", settings.file, "The four pictures, a PNG")->required();
+    app.add_option("--width", settings.size.x, "Pixels of each")
+        ->capture_default_str()
+        ->check(CLI::Range(16, 4096));
+    app.add_option("--height", settings.size.y, "Pixels of each")
+        ->capture_default_str()
+        ->check(CLI::Range(16, 4096));
+    app.add_option("--layers", settings.layers, "Strips of the view that volumes are clamped to")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 128));
+    app.add_option("--turn", settings.turn, "Of the sun about the court, degrees");
+    CLI11_PARSE(app, argc, argv);
+    run(settings);
     return 0;
 }
