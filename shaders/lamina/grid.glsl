@@ -198,30 +198,45 @@ vec3 laminaWorldToGrid(int grid, vec3 world, out bool inside) {
 
 // The 128 bits of slices [128 group, 128 group + 128) of a column: bit (k & 31) of component
 // (k >> 5) & 3 is slice k. Zero outside the grid.
-uvec4 laminaColumnBits(int grid, ivec2 column, int group) {
+// map: of a host that keeps several maps of one place, one after the other in the grid's texture, the
+// number of one of them; of a VoxelGrid 0, which the functions without it mean.
+uvec4 laminaColumnBits(int grid, int map, ivec2 column, int group) {
     uvec3 size = laminaGrid[grid].constants.size.xyz;
     if (any(lessThan(column, ivec2(0))) || any(greaterThanEqual(column, ivec2(size.xy))) || group < 0 ||
         group * LAMINA_SLICES_PER_GROUP >= int(size.z))
         return uvec4(0u);
-    return laminaFetchWord(grid, ivec3(column, group));
+    int groups = (int(size.z) + LAMINA_SLICES_PER_GROUP - 1) / LAMINA_SLICES_PER_GROUP;
+    return laminaFetchWord(grid, ivec3(column, map * groups + group));
+}
+
+uvec4 laminaColumnBits(int grid, ivec2 column, int group) {
+    return laminaColumnBits(grid, 0, column, group);
 }
 
 // Is this voxel set? False outside the grid.
-bool laminaVoxelSet(int grid, ivec3 voxel) {
+bool laminaVoxelSet(int grid, int map, ivec3 voxel) {
     if (voxel.z < 0)
         return false;
-    return laminaBit(laminaColumnBits(grid, voxel.xy, voxel.z >> 7), voxel.z & 127) != 0u;
+    return laminaBit(laminaColumnBits(grid, map, voxel.xy, voxel.z >> 7), voxel.z & 127) != 0u;
+}
+
+bool laminaVoxelSet(int grid, ivec3 voxel) {
+    return laminaVoxelSet(grid, 0, voxel);
 }
 
 // Set voxels of a column in slices nearer than `slice` (clamped to the grid's slices).
-int laminaCountNearer(int grid, ivec2 column, int slice) {
+int laminaCountNearer(int grid, int map, ivec2 column, int slice) {
     int limit = min(slice, int(laminaGrid[grid].constants.size.z));
     int count = 0;
     for (int group = 0; group * LAMINA_SLICES_PER_GROUP < limit; ++group) {
-        uvec4 bits = laminaColumnBits(grid, column, group);
+        uvec4 bits = laminaColumnBits(grid, map, column, group);
         count += laminaBitCount(bits & laminaMaskBelow(limit - group * LAMINA_SLICES_PER_GROUP));
     }
     return count;
+}
+
+int laminaCountNearer(int grid, ivec2 column, int slice) {
+    return laminaCountNearer(grid, 0, column, slice);
 }
 
 // The voxel of grid coordinates inside the grid; its upper bounds belong to the last voxel.

@@ -33,7 +33,7 @@
 #define LAMINA_TRANSMITTANCE_TEXTURE_UNIT 0
 #endif
 
-#define LAMINA_GRID_COUNT (LAMINA_TRANSMITTANCE_FACES * LAMINA_TRANSMITTANCE_CLASSES)
+#define LAMINA_GRID_COUNT LAMINA_TRANSMITTANCE_FACES
 #define LAMINA_GRID_BLOCK_BINDING (LAMINA_TRANSMITTANCE_BLOCK_BINDING + LAMINA_TRANSMITTANCE_GRID_BLOCKS)
 #define LAMINA_GRID_TEXTURE_UNIT (LAMINA_TRANSMITTANCE_TEXTURE_UNIT + LAMINA_TRANSMITTANCE_WORD_UNIT)
 #define LAMINA_GRID_RANGE_UNIT (LAMINA_GRID_TEXTURE_UNIT + LAMINA_GRID_COUNT)
@@ -137,22 +137,20 @@ float laminaExtrapolatedSum(float before, vec3 values, float slice) {
 
 // The exponent of T = 2^exponent that a column of a face adds for a point of this depth.
 vec3 laminaTransmittanceExponent(int face, ivec2 column, float depth) {
-    int first = face * LAMINA_TRANSMITTANCE_CLASSES;
-    float slice = laminaTransmittanceSlice(first, column, depth);
+    float slice = laminaTransmittanceSlice(face, column, depth);
     if (slice < 0.0)
         return vec3(0.0);
     bool isLinear = (laminaTransmittanceBlock.modes.y & LAMINA_TRANSMITTANCE_LINEAR_SLICES) != 0u;
     vec3 exponent = vec3(0.0);
     for (int i = 0; i < LAMINA_TRANSMITTANCE_CLASSES; ++i) {
-        int grid = first + i;
         float count;
         if (isLinear) {
             int k = int(floor(slice)) - 1;
-            vec3 values = vec3(laminaVoxelSet(grid, ivec3(column, k)), laminaVoxelSet(grid, ivec3(column, k - 1)),
-                               laminaVoxelSet(grid, ivec3(column, k - 2)));
-            count = laminaExtrapolatedSum(float(laminaCountNearer(grid, column, k)), values, slice);
+            vec3 values = vec3(laminaVoxelSet(face, i, ivec3(column, k)), laminaVoxelSet(face, i, ivec3(column, k - 1)),
+                               laminaVoxelSet(face, i, ivec3(column, k - 2)));
+            count = laminaExtrapolatedSum(float(laminaCountNearer(face, i, column, k)), values, slice);
         } else {
-            count = float(laminaCountNearer(grid, column, laminaTransmittanceIndex(grid, slice)));
+            count = float(laminaCountNearer(face, i, column, laminaTransmittanceIndex(face, slice)));
         }
         exponent += count * laminaTransmittanceBlock.attenuation[i].rgb;
     }
@@ -185,9 +183,8 @@ vec3 laminaTransmittanceExponent(int face, ivec2 column, float depth) {
 
 // The exponent at a world point, averaged over the filter's columns of a face.
 vec3 laminaTransmittanceFace(int face, vec3 world, vec3 normal) {
-    int grid = face * LAMINA_TRANSMITTANCE_CLASSES;
-    LaminaGridPoint place = laminaGridPoint(grid, world);
-    LaminaGridConstants constants = laminaGrid[grid].constants;
+    LaminaGridPoint place = laminaGridPoint(face, world);
+    LaminaGridConstants constants = laminaGrid[face].constants;
     if (!place.isInside || place.depth <= constants.depthRange.x)
         return vec3(0.0);
     bool isPerspective = (constants.size.w & LAMINA_GRID_PERSPECTIVE) != 0u;

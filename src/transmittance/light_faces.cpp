@@ -147,7 +147,7 @@ Result<void> check(const TransmittanceLight& light, const Box3& bounds) {
         return invalid("expected finite bounds that hold all casters, found an empty or infinite "
                        "box; pass the casters' world box");
     if (light.kind != LightKind::Point &&
-        (!isFinite(light.direction) || glm::length(light.direction) == 0.0))
+        !(glm::length(light.direction) > 0.0 && std::isfinite(glm::length(light.direction))))
         return invalid("expected a finite light direction of some length, found another");
     if (light.kind == LightKind::Directional)
         return {};

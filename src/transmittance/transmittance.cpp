@@ -2,79 +2,28 @@
 
 #include "gl/binding_guards.hpp"
 #include "gl/fetch_sampler.hpp"
+#include "gl/host_texture.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/screen_pass.hpp"
 #include "gl/view_constants.hpp"
 #include "transmittance/absorption_sums.hpp"
+#include "transmittance/leaf_maps.hpp"
 #include "transmittance/opaque_map.hpp"
+#include "transmittance/settings.hpp"
 
-#include <lamina/voxelize/voxelizer.hpp>
-
-#include <glm/geometric.hpp>
-
-#include <algorithm>
-#include <cmath>
 #include <variant>
 #include <vector>
 
 namespace lamina {
 namespace {
 
-constexpr float kWidestFilter = 7.0f;
-/// Of a stand-in for log2(0): 2^(n * kNoLight) is 0 for every share of a leaf that matters.
-constexpr float kNoLight = -1e4f;
-constexpr double kLeafBias = 1.0 / 5000.0;
-constexpr double kOpaqueBias = 1.0 / 1000.0;
 constexpr GLuint kApplyBlocks = LAMINA_TRANSMITTANCE_APPLY_BLOCK_BINDING;
 
-Error invalid(const std::string& text) {
-    return Error{ErrorCode::InvalidArgument, "transmittance: " + text};
-}
-
-Result<void> check(const TransmittanceDesc& desc) {
-    if (desc.maxFaces < 1 || desc.maxFaces > LAMINA_TRANSMITTANCE_MAX_FACES)
-        return invalid("expected 1 to 6 faces, found " + std::to_string(desc.maxFaces));
-    const bool isCount = desc.model == TransmittanceModel::LeafCount;
-    if (desc.classes < 1 || desc.maxFaces * desc.classes > LAMINA_TRANSMITTANCE_MAX_CLASSES)
-        return invalid("expected at least one class and at most 8 grids, found " +
-                       std::to_string(desc.classes) + " classes times " +
-                       std::to_string(desc.maxFaces) + " faces; use fewer of either");
-    if (!isCount && (desc.classes > 1 || desc.localRanges))
-        return invalid("expected one class and no local ranges of the absorption model, found " +
-                       std::to_string(desc.classes) + " classes" +
-                       (desc.localRanges ? " and local ranges" : ""));
-    if (desc.opaqueMapTexels == 0)
-        return invalid("expected an opaque shadow map of at least 1 texel, found 0");
-    return {};
-}
-
-Result<void> check(const TransmittanceSettings& settings) {
-    for (const glm::vec3& sigma : settings.attenuation)
-        for (int channel = 0; channel < 3; ++channel)
-            if (!(sigma[channel] >= 0.0f && sigma[channel] <= 1.0f))
-                return invalid("expected an attenuation in [0,1], found " +
-                               std::to_string(sigma[channel]));
-    for (const float width : {settings.filterWidth, settings.opaqueFilterWidth})
-        if (!(width >= 0.0f && width <= kWidestFilter))
-            return invalid("expected filter widths from 0 to 7, found " + std::to_string(width));
-    if (settings.depthBias && !std::isfinite(*settings.depthBias))
-        return invalid("expected a finite depth bias, found " +
-                       std::to_string(*settings.depthBias));
-    if (!(settings.absorptionScale >= 0.0f) || !std::isfinite(settings.absorptionScale))
-        return invalid("expected a finite absorption scale of at least 0, found " +
-                       std::to_string(settings.absorptionScale));
-    return {};
-}
+enum class TextureRole : std::uint8_t { Normals, Target };
 
 } // namespace
 
 struct Transmittance::Impl {
-    /// What counts leaves: a slicemap a face and class.
-    struct LeafMaps {
-        std::unique_ptr<Voxelizer> voxelizer;
-        std::vector<VoxelGrid> grids; ///< By face, then class.
-    };
-
     std::shared_ptr<gl::DeviceState> device;
     TransmittanceDesc desc;
     TransmittanceSettings settings;
@@ -99,17 +48,13 @@ struct Transmittance::Impl {
         , sampler(device) {}
 
     [[nodiscard]] Result<void> createMaps(const Device& host);
-    [[nodiscard]] Result<void> buildLeafMaps(const TransmittanceCasters& casters,
-                                             TransmittanceStats& stats);
-    [[nodiscard]] Result<void> buildSums(const TransmittanceCasters& casters,
+    [[nodiscard]] Result<void> buildMaps(const TransmittanceCasters& casters,
                                          TransmittanceStats& stats);
-    [[nodiscard]] std::uint32_t gridCount() const { return desc.maxFaces * desc.classes; }
-    [[nodiscard]] shared::LaminaTransmittanceConstants makeConstants() const;
     void uploadConstants();
     void bind(GLuint uniformBufferBinding, GLuint textureUnit);
     [[nodiscard]] Result<GLuint> program(int normals) const;
-    [[nodiscard]] Result<void> checkTexture(GLuint texture, const View& view,
-                                            const char* role) const;
+    [[nodiscard]] Result<void> checkColors(GLuint texture, const View& view,
+                                           TextureRole role) const;
     [[nodiscard]] Result<void> reserveTarget(const glm::uvec2& size);
     [[nodiscard]] std::uint64_t gpuBytes() const;
 };
@@ -122,53 +67,23 @@ Result<void> Transmittance::Impl::createMaps(const Device& host) {
         maps = std::move(*sums);
         return {};
     }
-    LeafMaps leafMaps;
-    // A leaf is one voxel of a column however steep it is: what counts is the number of leaves.
-    auto voxelizer = Voxelizer::create(host, {.backend = Backend::MrtSlicemap,
-                                              .coverage = Coverage::Sampled,
-                                              .localRanges = desc.localRanges,
-                                              .store = VoxelStore::Texture});
-    if (!voxelizer)
-        return voxelizer.error();
-    leafMaps.voxelizer = std::move(*voxelizer);
-    for (std::uint32_t i = 0; i < gridCount(); ++i) {
-        auto grid = VoxelGrid::create(host);
-        if (!grid)
-            return grid.error();
-        leafMaps.grids.push_back(std::move(*grid));
-    }
-    maps = std::move(leafMaps);
+    auto leafMaps = LeafMaps::create(host, desc);
+    if (!leafMaps)
+        return leafMaps.error();
+    maps = std::move(*leafMaps);
     return {};
 }
 
-Result<void> Transmittance::Impl::buildLeafMaps(const TransmittanceCasters& casters,
-                                                TransmittanceStats& stats) {
-    auto& leafMaps = std::get<LeafMaps>(maps);
-    const Material fallback;
-    VoxelizeOptions options;
-    if (desc.classes > 1) {
-        options.split = Split::ColorClass;
-        options.materials = casters.materials.empty() ? std::span(&fallback, 1) : casters.materials;
-    }
-    for (std::size_t face = 0; face < faces.grids.size(); ++face) {
-        auto voxelized = leafMaps.voxelizer->voxelizeWith(
-            casters.leaves, faces.grids[face], options,
-            std::span(leafMaps.grids).subspan(face * desc.classes, desc.classes));
-        if (!voxelized)
-            return voxelized.error();
-        stats.passes += voxelized->passes;
-        stats.meshTriangles = voxelized->meshTriangles;
-    }
-    return {};
-}
-
-Result<void> Transmittance::Impl::buildSums(const TransmittanceCasters& casters,
+Result<void> Transmittance::Impl::buildMaps(const TransmittanceCasters& casters,
                                             TransmittanceStats& stats) {
+    const Material fallback;
+    const std::span<const Material> materials =
+        casters.materials.empty() ? std::span(&fallback, 1) : casters.materials;
+    if (auto* leafMaps = std::get_if<LeafMaps>(&maps))
+        return leafMaps->build(casters.leaves, materials, faces, stats);
     std::vector<GeometrySource> all(casters.leaves.begin(), casters.leaves.end());
     all.insert(all.end(), casters.opaque.begin(), casters.opaque.end());
-    const Material fallback;
-    auto built = std::get<AbsorptionSums>(maps).build(
-        all, casters.materials.empty() ? std::span(&fallback, 1) : casters.materials, faces);
+    auto built = std::get<AbsorptionSums>(maps).build(all, materials, faces);
     if (!built)
         return built.error();
     stats.passes = built->passes;
@@ -176,43 +91,11 @@ Result<void> Transmittance::Impl::buildSums(const TransmittanceCasters& casters,
     return {};
 }
 
-shared::LaminaTransmittanceConstants Transmittance::Impl::makeConstants() const {
-    shared::LaminaTransmittanceConstants block{};
-    const glm::dvec3 direction = glm::length(light.direction) > 0.0
-                                     ? glm::normalize(light.direction)
-                                     : glm::dvec3(0.0, -1.0, 0.0);
-    constexpr float kNoCone = -2.0f;
-    block.light = light.kind == LightKind::Directional ? glm::vec4(glm::dvec4(-direction, 0.0))
-                                                       : glm::vec4(glm::dvec4(light.position, 1.0));
-    block.cone = {glm::vec3(direction), light.kind == LightKind::Spot
-                                            ? static_cast<float>(std::cos(light.coneAngle))
-                                            : kNoCone};
-    double depths = 0.0;
-    for (const GridTransform& grid : faces.grids)
-        depths = std::max(depths, grid.farDepth() - grid.nearDepth());
-    block.lookup = {settings.filterWidth, settings.opaqueFilterWidth,
-                    settings.depthBias.value_or(static_cast<float>(kLeafBias * depths)),
-                    settings.depthBias.value_or(static_cast<float>(kOpaqueBias * depths))};
-    block.scalars.x = settings.absorptionScale;
-    block.modes.x = desc.classes;
-    if (settings.slices == SliceLookup::Linear)
-        block.modes.y |= LAMINA_TRANSMITTANCE_LINEAR_SLICES;
-    if (settings.absorptionForm == AbsorptionForm::Linear)
-        block.modes.y |= LAMINA_TRANSMITTANCE_LINEAR_FORM;
-    for (int axis = 0; axis < 6; ++axis)
-        block.gridFaces[axis / 4][axis % 4] = faces.ofAxis[static_cast<std::size_t>(axis)];
-    for (std::size_t i = 0; i < settings.attenuation.size(); ++i)
-        for (int channel = 0; channel < 3; ++channel)
-            block.attenuation[i][channel] =
-                std::max(std::log2(1.0f - settings.attenuation[i][channel]), kNoLight);
-    opaqueMap.describe(block);
-    return block;
-}
-
 void Transmittance::Impl::uploadConstants() {
     if (!isDirty)
         return;
-    const auto block = makeConstants();
+    auto block = makeTransmittanceConstants(desc, settings, light, faces);
+    opaqueMap.describe(block);
     device->gl.NamedBufferSubData(constants.id(), 0, sizeof block, &block);
     isDirty = false;
 }
@@ -228,21 +111,18 @@ void Transmittance::Impl::bind(GLuint uniformBufferBinding, GLuint textureUnit) 
     };
     bindTexture(LAMINA_TRANSMITTANCE_OPAQUE_UNIT, opaqueMap.texture());
     const GLuint firstGridBlock = uniformBufferBinding + LAMINA_TRANSMITTANCE_GRID_BLOCKS;
-    // Faces that this light does not need get the first one's grids: no binding stays empty.
-    const auto faceOf = [&](std::uint32_t face) { return face < faces.grids.size() ? face : 0; };
-    if (const auto* sums = std::get_if<AbsorptionSums>(&maps)) {
-        bindTexture(LAMINA_TRANSMITTANCE_SUM_UNIT, sums->texture());
-        for (std::uint32_t face = 0; face < desc.maxFaces; ++face) {
-            const GLuint grid = sums->gridBlock(faceOf(face));
-            gl.BindBuffersBase(GL_UNIFORM_BUFFER, firstGridBlock + face, 1, &grid);
-        }
+    if (const auto* leafMaps = std::get_if<LeafMaps>(&maps)) {
+        const GLuint words = textureUnit + LAMINA_TRANSMITTANCE_WORD_UNIT;
+        leafMaps->bind(firstGridBlock, words, words + desc.maxFaces);
         return;
     }
-    const auto& leafMaps = std::get<LeafMaps>(maps);
-    const GLuint words = textureUnit + LAMINA_TRANSMITTANCE_WORD_UNIT;
-    for (std::uint32_t i = 0; i < gridCount(); ++i)
-        leafMaps.grids[faceOf(i / desc.classes) * desc.classes + i % desc.classes].bind(
-            firstGridBlock, words, i, words + gridCount());
+    const auto& sums = std::get<AbsorptionSums>(maps);
+    bindTexture(LAMINA_TRANSMITTANCE_SUM_UNIT, sums.texture());
+    for (std::uint32_t face = 0; face < desc.maxFaces; ++face) {
+        // Faces that this light does not need get the first one's grid: no binding stays empty.
+        const GLuint grid = sums.gridBlock(face < faces.grids.size() ? face : 0);
+        gl.BindBuffersBase(GL_UNIFORM_BUFFER, firstGridBlock + face, 1, &grid);
+    }
 }
 
 Result<GLuint> Transmittance::Impl::program(int normals) const {
@@ -257,22 +137,45 @@ Result<GLuint> Transmittance::Impl::program(int normals) const {
           {"LAMINA_TRANSMITTANCE_LOCAL_RANGES", desc.localRanges ? "1" : "0"}}});
 }
 
-Result<void> Transmittance::Impl::checkTexture(GLuint texture, const View& view,
-                                               const char* role) const {
+Result<void> Transmittance::Impl::checkColors(GLuint texture, const View& view,
+                                              TextureRole role) const {
     const GladGLContext& gl = device->gl;
-    GLint target = 0, width = 0, height = 0;
-    if (gl.IsTexture(texture)) {
-        gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-        gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &width);
-        gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &height);
-    }
-    if (target == GL_TEXTURE_2D && glm::uvec2(width, height) == view.size)
-        return {};
-    return invalid("expected a 2D texture of the view's " + std::to_string(view.size.x) + " x " +
-                   std::to_string(view.size.y) + " pixels as " + role + ", found " +
-                   (target == GL_TEXTURE_2D
-                        ? "one of " + std::to_string(width) + " x " + std::to_string(height)
-                        : "the name " + std::to_string(texture) + ", which is none"));
+    const bool isTarget = role == TextureRole::Target;
+    const auto invalid = [&](const std::string& found) {
+        return Error{ErrorCode::InvalidArgument,
+                     std::string("transmittance: expected ") + (isTarget ? "a target" : "normals") +
+                         " in a 2D texture of the view's " + std::to_string(view.size.x) + " x " +
+                         std::to_string(view.size.y) + " pixels, of a " +
+                         (isTarget ? "colour-renderable " : "") +
+                         "float or normalized format, found " + found};
+    };
+    if (!gl.IsTexture(texture))
+        return invalid("no texture of name " + std::to_string(texture));
+    const auto level = [&](GLenum name) {
+        GLint value = 0;
+        gl.GetTextureLevelParameteriv(texture, 0, name, &value);
+        return value;
+    };
+    GLint target = 0;
+    gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
+    if (target != GL_TEXTURE_2D)
+        return invalid("a texture of target " + std::to_string(target));
+    const glm::uvec2 size(level(GL_TEXTURE_WIDTH), level(GL_TEXTURE_HEIGHT));
+    if (size != view.size)
+        return invalid(std::to_string(size.x) + " x " + std::to_string(size.y) + " pixels");
+    const GLint type = level(GL_TEXTURE_RED_TYPE);
+    GLint isRenderable = GL_TRUE;
+    if (isTarget)
+        gl.GetInternalformativ(GL_TEXTURE_2D,
+                               static_cast<GLenum>(level(GL_TEXTURE_INTERNAL_FORMAT)),
+                               GL_COLOR_RENDERABLE, 1, &isRenderable);
+    // Mesa (22.3) calls formats of a shared exponent renderable, but cannot draw to them.
+    if (isTarget && level(GL_TEXTURE_SHARED_SIZE) != 0)
+        isRenderable = GL_FALSE;
+    if (isRenderable == GL_FALSE ||
+        (type != GL_FLOAT && type != GL_UNSIGNED_NORMALIZED && type != GL_SIGNED_NORMALIZED))
+        return invalid("another format");
+    return {};
 }
 
 Result<void> Transmittance::Impl::reserveTarget(const glm::uvec2& size) {
@@ -292,9 +195,7 @@ std::uint64_t Transmittance::Impl::gpuBytes() const {
         opaqueMap.gpuBytes() + constants.bytes() + viewConstants.bytes() + target.bytes();
     if (const auto* sums = std::get_if<AbsorptionSums>(&maps))
         return bytes + sums->gpuBytes();
-    for (const VoxelGrid& grid : std::get<LeafMaps>(maps).grids)
-        bytes += grid.gpuBytes();
-    return bytes;
+    return bytes + std::get<LeafMaps>(maps).gpuBytes();
 }
 
 Transmittance::Transmittance(std::unique_ptr<Impl> impl)
@@ -304,7 +205,7 @@ Transmittance& Transmittance::operator=(Transmittance&&) noexcept = default;
 Transmittance::~Transmittance() = default;
 
 Result<Transmittance> Transmittance::create(const Device& device, const TransmittanceDesc& desc) {
-    if (auto valid = check(desc); !valid)
+    if (auto valid = checkTransmittance(desc); !valid)
         return valid.error();
     auto impl = std::make_unique<Impl>(device, desc);
     if (auto created = impl->createMaps(device); !created)
@@ -327,7 +228,7 @@ Result<Transmittance> Transmittance::create(const Device& device, const Transmit
 }
 
 Result<void> Transmittance::setSettings(const TransmittanceSettings& settings) {
-    if (auto valid = check(settings); !valid)
+    if (auto valid = checkTransmittance(settings); !valid)
         return valid;
     mImpl->settings = settings;
     mImpl->isDirty = true;
@@ -351,10 +252,7 @@ Result<TransmittanceStats> Transmittance::prepare(const TransmittanceLight& ligh
     mImpl->faces = std::move(*faces);
     TransmittanceStats stats;
     stats.faces = static_cast<std::uint32_t>(mImpl->faces.grids.size());
-    auto built = mImpl->desc.model == TransmittanceModel::LeafCount
-                     ? mImpl->buildLeafMaps(casters, stats)
-                     : mImpl->buildSums(casters, stats);
-    if (!built)
+    if (auto built = mImpl->buildMaps(casters, stats); !built)
         return built.error();
     Result<void> drawn;
     if (casters.opaqueMap)
@@ -382,17 +280,22 @@ Result<std::uint32_t> Transmittance::apply(const TransmittanceReceiver& receiver
 
 Result<void> Transmittance::apply(const TransmittanceReceiver& receiver, std::uint32_t target) {
     if (!mImpl->isPrepared)
-        return invalid("expected prepared maps to apply, found none; call prepare() first");
+        return Error{
+            ErrorCode::InvalidArgument,
+            "transmittance: expected prepared maps to apply, found none; call prepare() first"};
     auto view = makeViewConstants(receiver.view, "transmittance");
     if (!view)
         return view.error();
-    if (auto valid = mImpl->checkTexture(receiver.depthTexture, receiver.view, "depth"); !valid)
-        return valid;
-    if (auto valid = mImpl->checkTexture(target, receiver.view, "target"); !valid)
+    if (auto depths = gl::depthStep(*mImpl->device, receiver.depthTexture, receiver.view.size,
+                                    "transmittance");
+        !depths)
+        return depths.error();
+    if (auto valid = mImpl->checkColors(target, receiver.view, TextureRole::Target); !valid)
         return valid;
     int normals = LAMINA_TRANSMITTANCE_NORMALS_FROM_DEPTH;
     if (receiver.normalTexture != 0) {
-        if (auto valid = mImpl->checkTexture(receiver.normalTexture, receiver.view, "normals");
+        if (auto valid =
+                mImpl->checkColors(receiver.normalTexture, receiver.view, TextureRole::Normals);
             !valid)
             return valid;
         normals = receiver.normalEncoding == NormalEncoding::Signed
@@ -436,13 +339,14 @@ std::string Transmittance::shaderDefines(std::uint32_t uniformBufferBinding,
 }
 
 std::uint32_t Transmittance::uniformBufferCount() const {
-    return LAMINA_TRANSMITTANCE_GRID_BLOCKS + mImpl->gridCount();
+    return LAMINA_TRANSMITTANCE_GRID_BLOCKS + mImpl->desc.maxFaces;
 }
 
 std::uint32_t Transmittance::textureUnitCount() const {
     if (mImpl->desc.model == TransmittanceModel::Absorption)
         return LAMINA_TRANSMITTANCE_WORD_UNIT;
-    return LAMINA_TRANSMITTANCE_WORD_UNIT + mImpl->gridCount() * (mImpl->desc.localRanges ? 2 : 1);
+    return LAMINA_TRANSMITTANCE_WORD_UNIT +
+           mImpl->desc.maxFaces * (mImpl->desc.localRanges ? 2 : 1);
 }
 
 void Transmittance::bind(std::uint32_t uniformBufferBinding, std::uint32_t textureUnit) {

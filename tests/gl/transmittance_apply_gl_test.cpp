@@ -8,7 +8,9 @@
 #include <gmock/gmock.h>
 #include <reference/shapes.hpp>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace lamina {
@@ -115,12 +117,14 @@ TEST_F(TransmittanceApplyGlTest, AgreesWithTheEnginesForwardShader) {
         TransmittanceModel model;
         bool local;
         LightKind kind;
+        std::uint32_t classes = 1;
     };
     for (const Case& test : {Case{TransmittanceModel::LeafCount, false, LightKind::Directional},
                              Case{TransmittanceModel::LeafCount, true, LightKind::Directional},
                              Case{TransmittanceModel::Absorption, false, LightKind::Directional},
                              Case{TransmittanceModel::LeafCount, true, LightKind::Spot},
                              Case{TransmittanceModel::LeafCount, true, LightKind::Point},
+                             Case{TransmittanceModel::LeafCount, true, LightKind::Point, 3},
                              Case{TransmittanceModel::Absorption, false, LightKind::Point}}) {
         SCOPED_TRACE(std::to_string(static_cast<int>(test.model)) + " light " +
                      std::to_string(static_cast<int>(test.kind)) + (test.local ? " local" : ""));
@@ -128,6 +132,7 @@ TEST_F(TransmittanceApplyGlTest, AgreesWithTheEnginesForwardShader) {
         desc.model = test.model;
         desc.size = {64, 64, 64};
         desc.localRanges = test.local;
+        desc.classes = test.classes;
         desc.opaqueMapTexels = 256;
         desc.maxFaces = test.kind == LightKind::Point ? 6 : 1;
         auto transmittance = Transmittance::create(device(), desc).value();
@@ -318,8 +323,9 @@ TEST_F(TransmittanceApplyGlTest, ErrorsSayWhatIsWrong) {
         return made ? std::string() : made.error().text;
     };
     EXPECT_EQ(codeOf({}), "");
-    EXPECT_THAT(codeOf({.classes = 0}), testing::HasSubstr("at least one class"));
-    EXPECT_THAT(codeOf({.classes = 2, .maxFaces = 6}), testing::HasSubstr("at most 8 grids"));
+    EXPECT_THAT(codeOf({.classes = 0}), testing::HasSubstr("1 to 8 classes"));
+    EXPECT_THAT(codeOf({.classes = 9}), testing::HasSubstr("1 to 8 classes"));
+    EXPECT_THAT(codeOf({.maxFaces = 0}), testing::HasSubstr("1 to 6 faces"));
     EXPECT_THAT(codeOf({.maxFaces = 7}), testing::HasSubstr("1 to 6 faces"));
     EXPECT_THAT(codeOf({.opaqueMapTexels = 0}), testing::HasSubstr("opaque shadow map"));
     EXPECT_THAT(codeOf({.model = TransmittanceModel::Absorption, .localRanges = true}),
@@ -372,12 +378,99 @@ TEST_F(TransmittanceApplyGlTest, ErrorsSayWhatIsWrong) {
     EXPECT_TRUE(transmittance.apply({mView, depth.id()}));
 }
 
+TEST_F(TransmittanceApplyGlTest, BadLightsAndGridsAreRefused) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    auto transmittance =
+        Transmittance::create(device(), {.size = {32, 32, 32}, .maxFaces = 6}).value();
+    const auto expectRefused = [&](const TransmittanceLight& light, const char* text) {
+        const auto prepared = transmittance.prepare(light, casters());
+        ASSERT_FALSE(prepared) << text;
+        EXPECT_EQ(prepared.error().code, ErrorCode::InvalidArgument);
+        EXPECT_THAT(prepared.error().text, testing::HasSubstr(text));
+    };
+    TransmittanceLight light = mLight;
+    for (const glm::dvec3& direction :
+         {glm::dvec3(kNan, -1, 0), glm::dvec3(0, 1e200, 1e200), glm::dvec3(0.0)}) {
+        light.direction = direction;
+        light.kind = LightKind::Directional;
+        expectRefused(light, "direction");
+        light.kind = LightKind::Spot;
+        expectRefused(light, "direction");
+    }
+    light = mLight;
+    light.kind = LightKind::Point;
+    light.position.z = kNan;
+    expectRefused(light, "position");
+    light.position = {0.0, 2.0, 0.0};
+    light.near = kNan;
+    expectRefused(light, "near");
+    light.near = 0.01;
+    light.direction = glm::dvec3(kNan); // Of no use to a point light.
+    ASSERT_TRUE(transmittance.prepare(light, casters()));
+    for (const glm::vec3& value : probe(transmittance, std::array{test::ProbePoint{{0, 1, 0}}}))
+        EXPECT_TRUE(value.x >= 0.0f && value.x <= 1.0f);
+
+    EXPECT_THAT(Transmittance::create(device(), {.size = {32, 0, 32}}).error().text,
+                testing::HasSubstr("32 x 0 x 32"));
+    for (const glm::uvec3& size :
+         {glm::uvec3(100'000, 16, 16), glm::uvec3(16, 16, 1u << 20), glm::uvec3(1u << 31)})
+        for (const TransmittanceModel model :
+             {TransmittanceModel::LeafCount, TransmittanceModel::Absorption}) {
+            auto large = Transmittance::create(device(), {.model = model, .size = size}).value();
+            const auto prepared = large.prepare(mLight, casters());
+            ASSERT_FALSE(prepared);
+            EXPECT_EQ(prepared.error().code, ErrorCode::DeviceLimit) << prepared.error().text;
+            const gl::Texture depth = texture(GL_DEPTH_COMPONENT32F);
+            EXPECT_THAT(large.apply({mView, depth.id()}).error().text,
+                        testing::HasSubstr("prepare()"));
+        }
+    auto opaque =
+        Transmittance::create(device(), {.size = {16, 16, 16}, .opaqueMapTexels = 1u << 20})
+            .value();
+    EXPECT_EQ(opaque.prepare(mLight, casters()).error().code, ErrorCode::DeviceLimit);
+    for (const float sigma : {-0.01f, 1.01f, std::numeric_limits<float>::quiet_NaN()}) {
+        TransmittanceSettings settings;
+        settings.attenuation[0].z = sigma;
+        EXPECT_THAT(transmittance.setSettings(settings).error().text,
+                    testing::HasSubstr("attenuation in [0,1]"));
+    }
+    EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST_F(TransmittanceApplyGlTest, TexturesOfOtherFormatsAreRefused) {
+    auto transmittance = Transmittance::create(device(), {.size = {32, 32, 32}}).value();
+    ASSERT_TRUE(transmittance.prepare(mLight, casters()));
+    const gl::Texture depth = texture(GL_DEPTH_COMPONENT32F);
+    const gl::Texture target = texture(GL_RGBA8);
+    ASSERT_TRUE(transmittance.apply({mView, depth.id()}, target.id()));
+    const auto before = read(target.id());
+    for (const GLenum format : {GL_RGBA8UI, GL_R32I, GL_RGB9_E5, GL_DEPTH_COMPONENT24}) {
+        const gl::Texture wrong = texture(format);
+        const auto applied = transmittance.apply({mView, depth.id()}, wrong.id());
+        ASSERT_FALSE(applied) << format;
+        EXPECT_EQ(applied.error().code, ErrorCode::InvalidArgument);
+        EXPECT_THAT(applied.error().text, testing::HasSubstr("target"));
+        if (format == GL_RGB9_E5)
+            continue; // Can be read.
+        const auto shaded = transmittance.apply({mView, depth.id(), wrong.id()}, target.id());
+        ASSERT_FALSE(shaded) << format;
+        EXPECT_THAT(shaded.error().text, testing::HasSubstr("normals"));
+        if (format == GL_DEPTH_COMPONENT24)
+            continue;
+        const auto behind = transmittance.apply({mView, wrong.id()}, target.id());
+        ASSERT_FALSE(behind) << format;
+        EXPECT_THAT(behind.error().text, testing::HasSubstr("depth"));
+    }
+    EXPECT_EQ(shareBeyond(read(target.id()), before, 0.0f), 0.0);
+    EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
 TEST_F(TransmittanceApplyGlTest, BindTakesWhatItSays) {
     auto transmittance =
         Transmittance::create(device(), {.size = {32, 32, 32}, .localRanges = true, .classes = 3})
             .value();
-    EXPECT_EQ(transmittance.uniformBufferCount(), 4u);
-    EXPECT_EQ(transmittance.textureUnitCount(), 8u);
+    EXPECT_EQ(transmittance.uniformBufferCount(), 2u);
+    EXPECT_EQ(transmittance.textureUnitCount(), 4u);
     const auto before = test::readGlState(gl());
     transmittance.bind(2, 3);
     EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());

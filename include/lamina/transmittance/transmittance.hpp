@@ -50,12 +50,15 @@ struct TransmittanceDesc {
     /// LeafCount: slices divide the near/far range of each column ([ED06] 2.3), which resolves more
     /// at the cost of a further pass over the leaves.
     bool localRanges = false;
-    /// LeafCount: leaf colours, each with a slicemap of its own made in the same pass;
-    /// Material::colorClass tells which one takes a leaf. maxFaces * classes is at most 8.
+    /// LeafCount: leaf colours, 1 to 8, each with a slicemap of its own made in the same pass;
+    /// Material::colorClass tells which one takes a leaf. Each class costs 16 bytes a column, face
+    /// and 128 slices (and as much once more for the face that is being made), a copy of as much
+    /// in prepare(), and in look-ups a read of as many columns as the first.
     std::uint32_t classes = 1;
     /// Perspective grids of a light, 1 to 6. One serves every directional and spot light, and a
     /// point light that sees all casters within 50 degrees of one direction; any other point light
-    /// needs 6.
+    /// needs 6. Each is a further pass over the leaves and over the opaque casters; a look-up
+    /// reads one of them.
     std::uint32_t maxFaces = 1;
     /// Texels a side of the opaque shadow map of each face.
     std::uint32_t opaqueMapTexels = 1024;
