@@ -39,6 +39,11 @@ bool laminaVisibleDepth(ivec2 pixel, out float depth) {
         slope *= steepest * width / climb;
     precise float bias = laminaFrame.bias.x * slope + laminaFrame.bias.y + laminaFrame.bias.z * depth;
     precise float nearer = depth - laminaFrame.depth.y * bias;
-    depth = clamp(nearer, laminaFrame.depth.z, laminaFrame.depth.w);
+    // Behind the near plane by the least step: what lies before it is drawn at its depth, and must not count
+    // as behind the point.
+    const float gap = 1.0 / 16777216.0;
+    float least = laminaFrame.depth.z + (laminaFrame.depth.y > 0.0 ? gap : 0.0);
+    float greatest = laminaFrame.depth.w - (laminaFrame.depth.y > 0.0 ? 0.0 : gap);
+    depth = clamp(nearer, least, greatest);
     return true;
 }

@@ -39,42 +39,53 @@ Result<CasterDraws::Caster> CasterDraws::resolve(const ShadowCaster& caster, std
     Caster resolved{caster.topology, {}};
     if (const auto* view = std::get_if<MeshView>(&caster.source)) {
         resolved.view = *view;
-    } else {
-        const auto& source = std::get<DrawSource>(caster.source);
-        auto program = mCapture.program(source);
-        if (!program)
-            return program.error();
-        auto triangles = mCapture.capture(index, source, *program);
-        if (!triangles)
-            return triangles.error();
-        resolved.view.vertexBuffer = triangles->buffer;
-        resolved.view.vertexCount = static_cast<std::uint32_t>(triangles->capacity * 3);
+        return resolved;
     }
-    if (resolved.view.vertexCount < caster.topology->vertexCount())
-        return invalid(index, "expected the " + std::to_string(caster.topology->vertexCount()) +
-                                  " vertices of its topology, found " +
-                                  std::to_string(resolved.view.vertexCount) +
-                                  "; make a topology for each mesh");
+    const auto& source = std::get<DrawSource>(caster.source);
+    auto program = mCapture.program(source);
+    if (!program)
+        return program.error();
+    auto triangles = mCapture.capture(index, source, *program);
+    if (!triangles)
+        return triangles.error();
+    resolved.view.vertexBuffer = triangles->buffer;
+    resolved.view.vertexCount = static_cast<std::uint32_t>(triangles->capacity * 3);
+    if (auto valid = checkVertices(resolved, index); !valid)
+        return valid.error();
     return resolved;
 }
 
-Result<void> CasterDraws::set(std::span<const ShadowCaster> casters, const glm::dvec3& origin,
-                              bool clipsVolumes) {
-    // Every error of a caster comes before the first callback runs.
+Result<void> CasterDraws::checkVertices(const Caster& caster, std::size_t index) {
+    if (caster.view.vertexCount >= caster.topology->vertexCount())
+        return {};
+    return invalid(index, "expected the " + std::to_string(caster.topology->vertexCount()) +
+                              " vertices of its topology, found " +
+                              std::to_string(caster.view.vertexCount) +
+                              "; make a topology for each mesh");
+}
+
+Result<void> CasterDraws::check(std::span<const ShadowCaster> casters) const {
     bool isCaptured = false;
     for (std::size_t i = 0; i < casters.size(); ++i) {
-        if (!casters[i].topology)
+        const ShadowTopology* topology = casters[i].topology;
+        if (!topology)
             return invalid(i, "expected a topology, found none");
         const auto* view = std::get_if<MeshView>(&casters[i].source);
         auto valid = view ? checkMeshView(*mDevice, *view, i, kWhat)
                           : checkDrawSource(std::get<DrawSource>(casters[i].source), i, kWhat);
+        if (valid && view)
+            valid = checkVertices({topology, *view}, i);
         if (!valid)
             return valid.error();
         isCaptured = isCaptured || !view;
     }
     if (isCaptured)
-        if (auto free = mCapture.checkHost(); !free)
-            return free.error();
+        return mCapture.checkHost();
+    return {};
+}
+
+Result<void> CasterDraws::set(std::span<const ShadowCaster> casters, const glm::dvec3& origin,
+                              bool clipsVolumes) {
     std::vector<Caster> resolved;
     for (std::size_t i = 0; i < casters.size(); ++i) {
         auto caster = resolve(casters[i], i);

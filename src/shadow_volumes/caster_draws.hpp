@@ -22,9 +22,12 @@ class CasterDraws {
 public:
     explicit CasterDraws(std::shared_ptr<gl::DeviceState> device);
 
-    /// Checks casters, captures those that their own vertex stage makes, and takes them over; on
-    /// errors those of before stay. clipsVolumes: volumes of VolumeExtent::Kept fill clip
-    /// distances. Errors: those of ShadowVolumes::prepare() that concern casters.
+    /// Errors: InvalidArgument. Changes nothing.
+    [[nodiscard]] Result<void> check(std::span<const ShadowCaster> casters) const;
+    /// Captures those of the checked casters that their own vertex stage makes, and takes all over.
+    /// clipsVolumes: volumes of VolumeExtent::Kept fill clip distances.
+    /// Errors: InvalidArgument (a vertex stage that makes too few vertices), OutOfMemory,
+    /// ShaderError.
     [[nodiscard]] Result<void> set(std::span<const ShadowCaster> casters, const glm::dvec3& origin,
                                    bool clipsVolumes);
 
@@ -45,6 +48,7 @@ private:
         MeshView view;
     };
 
+    [[nodiscard]] static Result<void> checkVertices(const Caster& caster, std::size_t index);
     [[nodiscard]] Result<Caster> resolve(const ShadowCaster& caster, std::size_t index);
     void uploadBlocks(const glm::dvec3& origin, bool clipsVolumes);
 

@@ -30,12 +30,12 @@ glm::vec4 layerAxis(const View& view, const glm::dvec4& light, std::uint32_t lay
 }
 
 Result<glm::dvec4> checkedLight(const glm::dvec4& light) {
-    const bool isFinite = std::isfinite(light.x) && std::isfinite(light.y) &&
-                          std::isfinite(light.z) && std::isfinite(light.w);
-    if (isFinite && light.w != 0.0)
-        return glm::dvec4(glm::dvec3(light) / light.w, 1.0);
+    const glm::dvec3 position = glm::dvec3(light) / light.w;
+    const double distance = glm::length(position);
+    if (light.w != 0.0 && std::isfinite(light.w) && std::isfinite(distance))
+        return glm::dvec4(position, 1.0);
     const double length = glm::length(glm::dvec3(light));
-    if (!isFinite || length == 0.0)
+    if (light.w != 0.0 || !std::isfinite(length) || length == 0.0)
         return Error{ErrorCode::InvalidArgument,
                      "shadow volumes: expected a light at a finite position (w 1) or in a "
                      "direction other than zero (w 0), found (" +

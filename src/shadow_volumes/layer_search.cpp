@@ -154,22 +154,16 @@ void LayerFinder::find(GLuint frame, const ShadowFrame& shadowFrame,
     clear(casters);
     overVisiblePoints(frame, shadowFrame, depths);
     {
-        const GladGLContext& gl = mDevice->gl;
         gl::RasterStateGuard guard(*mDevice, 2);
         const gl::DrawBufferGuard buffers(*mDevice, LAMINA_SHADOW_STORAGE_BINDINGS);
         const gl::TextureUnitGuard textures(*mDevice, 0, LAMINA_SHADOW_TEXTURE_UNITS);
-        gl.BindBuffersBase(GL_UNIFORM_BUFFER, LAMINA_SHADOW_FRAME_BINDING, 1, &frame);
+        mDevice->gl.BindBuffersBase(GL_UNIFORM_BUFFER, LAMINA_SHADOW_FRAME_BINDING, 1, &frame);
         bindStorage(receivers.flags());
         if (receivers.size() > 0)
             drawReceivers(shadowFrame, depths, scene, receivers, guard);
-        const gl::DebugGroup group(*mDevice, "lamina: casters seen from the light");
         guard.setHostPrimitiveRestart(false);
         drawBlockers(casters);
-        gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, mNoTarget.id());
-        if (mDesc.search == LayerSearch::Queries)
-            searchByQueries(casters);
-        else
-            searchByReduction(casters);
+        search(casters);
     }
     settle(frame, casters.size());
 }
@@ -235,6 +229,7 @@ void LayerFinder::drawReceivers(const ShadowFrame& shadowFrame, const gl::Sample
 }
 
 void LayerFinder::drawBlockers(const CasterDraws& casters) {
+    const gl::DebugGroup group(*mDevice, "lamina: casters seen from the light");
     const GladGLContext& gl = mDevice->gl;
     const auto side = static_cast<GLfloat>(mDesc.lightMapTexels);
     casters.bind();
@@ -267,6 +262,15 @@ void LayerFinder::drawBlockers(const CasterDraws& casters) {
         casters.draw(i, CasterPart::Edges, VolumeExtent::Whole, {});
 }
 
+void LayerFinder::search(const CasterDraws& casters) {
+    const gl::DebugGroup group(*mDevice, "lamina: caster layers");
+    mDevice->gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, mNoTarget.id());
+    if (mDesc.search == LayerSearch::Queries)
+        searchByQueries(casters);
+    else
+        searchByReduction(casters);
+}
+
 void LayerFinder::searchByReduction(const CasterDraws& casters) {
     const GladGLContext& gl = mDevice->gl;
     gl.UseProgram(mPrograms.casterLayers);
@@ -295,7 +299,7 @@ void LayerFinder::searchByQueries(const CasterDraws& casters) {
 }
 
 void LayerFinder::settle(GLuint frame, std::uint32_t casters) {
-    const gl::DebugGroup group(*mDevice, "lamina: caster layers");
+    const gl::DebugGroup group(*mDevice, "lamina: volume commands");
     const GladGLContext& gl = mDevice->gl;
     const gl::ComputeStateGuard guard(*mDevice, 1, LAMINA_SHADOW_STORAGE_BINDINGS);
     gl.BindBuffersBase(GL_UNIFORM_BUFFER, LAMINA_SHADOW_FRAME_BINDING, 1, &frame);

@@ -41,6 +41,7 @@ private:
                        const ShadowScene& scene, ReceiverPass& receivers,
                        gl::RasterStateGuard& guard);
     void drawBlockers(const CasterDraws& casters);
+    void search(const CasterDraws& casters);
     void searchByReduction(const CasterDraws& casters);
     void searchByQueries(const CasterDraws& casters);
     void settle(GLuint frame, std::uint32_t casters);

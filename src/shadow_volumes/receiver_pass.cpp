@@ -54,15 +54,21 @@ Result<ReceiverPass::Programs> ReceiverPass::build(const GeometrySource& source,
     return Programs{*seen, *layers};
 }
 
-Result<void> ReceiverPass::set(std::span<const GeometrySource> receivers, bool withSlicemap) {
-    std::vector<Programs> programs;
+Result<void> ReceiverPass::check(std::span<const GeometrySource> receivers) const {
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         const auto* view = std::get_if<MeshView>(&receivers[i]);
         auto valid = view ? checkMeshView(*mDevice, *view, i, kWhat)
                           : checkDrawSource(std::get<DrawSource>(receivers[i]), i, kWhat);
         if (!valid)
             return valid.error();
-        auto built = build(receivers[i], withSlicemap);
+    }
+    return {};
+}
+
+Result<void> ReceiverPass::set(std::span<const GeometrySource> receivers, bool withSlicemap) {
+    std::vector<Programs> programs;
+    for (const GeometrySource& receiver : receivers) {
+        auto built = build(receiver, withSlicemap);
         if (!built)
             return built.error();
         programs.push_back(*built);

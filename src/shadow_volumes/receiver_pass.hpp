@@ -14,8 +14,10 @@ class ReceiverPass {
 public:
     explicit ReceiverPass(std::shared_ptr<gl::DeviceState> device);
 
-    /// Checks receivers, builds their programs and makes room. withSlicemap: also for drawLayers().
-    /// Errors: InvalidArgument, ShaderError, OutOfMemory.
+    /// Errors: InvalidArgument. Changes nothing.
+    [[nodiscard]] Result<void> check(std::span<const GeometrySource> receivers) const;
+    /// Builds programs of checked receivers and makes room. withSlicemap: also for drawLayers().
+    /// Errors: ShaderError, OutOfMemory.
     [[nodiscard]] Result<void> set(std::span<const GeometrySource> receivers, bool withSlicemap);
 
     /// Marks the receivers that the view sees. The caller has bound the frame's constants, and

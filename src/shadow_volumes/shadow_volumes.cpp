@@ -110,7 +110,12 @@ Result<void> ShadowVolumes::prepare(const ShadowScene& scene) {
             ErrorCode::InvalidArgument,
             std::string(kOperation) +
                 ": expected receivers, for a ShadowVolumesDesc without litmap, found none"};
+    if (auto valid = impl.casters.check(scene.casters); !valid)
+        return valid;
+    if (auto valid = impl.receivers.check(scene.receivers); !valid)
+        return valid;
     const gl::DebugGroup group(*impl.device, "lamina: shadow volumes, prepare");
+    impl.depthTexture = 0; // From here on the frame before is lost.
     const auto faces = frame->constants.size.w;
     const auto casterCount = static_cast<std::uint32_t>(scene.casters.size());
     if (auto reserved = impl.finder.reserve(faces, casterCount); !reserved)

@@ -77,6 +77,10 @@ TEST_F(ShadowVolumesGlTest, ShadowsOfClosedMeshesAreThoseOfRays) {
     expectShadows("lamp", host, view, {1.5, 4.0, 1.0, 1.0});
     expectShadows("lamp_ahead", host, view, {-1.0, 2.5, -3.5, 1.0});
     expectShadows("lamp_behind", host, view, {3.0, 2.5, 9.0, 1.0});
+    // Volumes and casters cut by the near plane, and the viewer in a volume.
+    expectShadows("near_plane", host, lookAt({-2.6, 0.7, -1.6}, {0.1, 0.6, 0.3}, kSize, 0.9), kSun);
+    expectShadows("viewer_in_shadow_of_sun", host,
+                  lookAt({-2.3, 0.3, -1.4}, {0.1, 0.6, 0.3}, kSize), kSun);
     expectShadows("viewer_in_shadow", host, lookAt({-0.9, 0.6, -1.6}, {0.1, 0.6, 0.3}, kSize),
                   {-3.0, 3.0, 0.5, 1.0});
 }

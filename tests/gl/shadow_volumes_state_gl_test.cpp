@@ -122,6 +122,13 @@ TEST_F(ShadowVolumesStateGlTest, RefusesWhatItCannotServe) {
     expectRefused(scene, desc, "expected a light");
     scene.light = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 1};
     expectRefused(scene, desc, "expected a light");
+    scene.light = {1e300, 0, 0, 1e-300};
+    expectRefused(scene, desc, "expected a light");
+    scene.light = {1e300, 1e300, 0, 0};
+    expectRefused(scene, desc, "expected a light");
+    scene = mScene;
+    scene.view.size = {0, 0};
+    expectRefused(scene, desc, "0 x 0");
     scene = mScene;
     scene.view.worldToClip[1] = glm::dvec4(0.0);
     expectRefused(scene, desc, "inverse");
@@ -160,6 +167,67 @@ TEST_F(ShadowVolumesStateGlTest, RefusesWhatItCannotServe) {
     MeshView bad = std::get<MeshView>(mHost->sources()[1]);
     bad.vertexCount = 3;
     EXPECT_EQ(ShadowTopology::create(device(), bad).error().code, ErrorCode::InvalidMesh);
+}
+
+TEST_F(ShadowVolumesStateGlTest, RefusedFramesLeaveTheOneBefore) {
+    auto volumes = ShadowVolumes::create(device(), {.lightMapTexels = 64}).value();
+    const auto expected = picture(volumes);
+    const auto report = volumes.downloadReport().value();
+    // More casters, the last of them bad; another view; a bad receiver.
+    SceneHost other(device(), {{reference::makePlane({0, 0, 0}, {0, 1, 0}, 20.0f), false},
+                               {reference::makeCube({0, 1, 0}, 0.5f)},
+                               {reference::makeCube({1, 1, 0}, 0.5f)},
+                               {reference::makeCube({2, 1, 0}, 0.5f)},
+                               {reference::makeCube({3, 1, 0}, 0.5f)}});
+    ShadowScene scene;
+    scene.view = lookAt({4, 4, 6}, {0, 0.5, 0}, {32, 80});
+    scene.depthTexture = other.drawDepth(scene.view);
+    scene.light = {0.0, 1.0, 0.0, 0.0};
+    std::vector<ShadowCaster> casters = other.casters();
+    std::get<MeshView>(casters.back().source).vertexCount = 3;
+    scene.casters = casters;
+    EXPECT_FALSE(volumes.prepare(scene));
+    scene.casters = other.casters();
+    std::vector<GeometrySource> receivers = other.sources();
+    std::get<MeshView>(receivers.back()).vertexBuffer = 0;
+    scene.receivers = receivers;
+    EXPECT_FALSE(volumes.prepare(scene));
+    EXPECT_TRUE(test::readRed(gl(), volumes.apply().value(), kSize) == expected);
+    const auto again = volumes.downloadReport().value();
+    EXPECT_EQ(again.keptLayers, report.keptLayers);
+    EXPECT_EQ(again.receiversCulled, report.receiversCulled);
+    EXPECT_EQ(again.stencilFragments, report.stencilFragments);
+
+    // A map beyond the device: nothing is prepared, and a smaller one may follow.
+    auto large = ShadowVolumes::create(device(), {.layers = 128, .lightMapTexels = 8192}).value();
+    EXPECT_EQ(large.prepare(mScene).error().code, ErrorCode::DeviceLimit);
+    EXPECT_THAT(large.apply().error().text, HasSubstr("prepare()"));
+    scene.receivers = {};
+    ASSERT_TRUE(volumes.prepare(scene));
+    EXPECT_EQ(volumes.downloadReport()->casters, 4u);
+    EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST_F(ShadowVolumesStateGlTest, CastersWithoutTrianglesCastNothing) {
+    TriangleMesh nothing = reference::makeCube({0, 1, 0}, 1.0f);
+    for (glm::uvec3& triangle : nothing.triangles)
+        triangle.y = triangle.x;
+    SceneHost host(device(),
+                   {{reference::makePlane({0, 0, 0}, {0, 1, 0}, 20.0f), false}, {nothing}});
+    ShadowScene scene = mScene;
+    scene.depthTexture = host.drawDepth(scene.view);
+    scene.casters = host.casters();
+    EXPECT_FALSE(host.casters().front().topology->isClosed());
+    for (const LayerSearch search : {LayerSearch::Reduction, LayerSearch::Queries}) {
+        auto volumes =
+            ShadowVolumes::create(device(), {.lightMapTexels = 32, .search = search}).value();
+        ASSERT_TRUE(volumes.prepare(scene));
+        for (const VolumeExtent extent : {VolumeExtent::Kept, VolumeExtent::Whole})
+            EXPECT_THAT(test::readRed(gl(), volumes.apply(extent).value(), kSize),
+                        testing::Each(1.0f));
+        EXPECT_EQ(volumes.downloadReport()->castersCulled, 1u);
+    }
+    EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
 TEST_F(ShadowVolumesStateGlTest, NoCastersAndNothingVisibleAreLit) {

@@ -125,7 +125,9 @@ public:
     ShadowVolumes& operator=(ShadowVolumes&&) noexcept;
     ~ShadowVolumes();
 
-    /// Finds the casters and layers to draw for this frame. Errors leave the frame before in place.
+    /// Finds the casters and layers to draw for this frame. InvalidArgument leaves the frame before
+    /// in place, but for a DrawSource that draws too little; after that and after other errors
+    /// nothing is prepared.
     /// Errors: InvalidArgument (a view without an inverse, a depth texture of another kind or size,
     /// a light that is nowhere, a caster without topology or with fewer vertices than it needs, a
     /// MeshView that does not fit its buffers, no receivers where they are needed; an active

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <mutex>
 
@@ -31,8 +32,11 @@ std::vector<std::string> GlTest::takeHighSeverityMessages() {
 }
 
 void GlTest::SetUp() {
-    auto created =
-        Device::fromCurrentContext([](const char* name) { return context().getProcAddress(name); });
+    DeviceDesc desc;
+    if (const char* shaders = std::getenv("LAMINA_SHADER_DIR"))
+        desc.shaderOverrideDirectory = shaders;
+    auto created = Device::fromCurrentContext(
+        [](const char* name) { return context().getProcAddress(name); }, desc);
     ASSERT_TRUE(created) << created.error().text;
     mDevice.emplace(std::move(*created));
     gl().Enable(GL_DEBUG_OUTPUT);
