@@ -3,6 +3,8 @@
 // Error: against exact crossings by ray casting, beside a perfect slicemap of the same columns and
 // slices. Cost: [ED06] Table 1 anew, beside a plain shadow map of the same scene.
 
+#include "stage_clock.hpp"
+
 #include "gl/device_state.hpp"
 #include "transmittance/light_faces.hpp"
 
@@ -18,7 +20,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -28,6 +30,7 @@
 namespace {
 
 using namespace lamina;
+using bench::StageClock;
 
 constexpr float kSigma = 0.1f;
 const glm::dvec3 kToSun = glm::normalize(glm::dvec3(-0.45, 1.0, -0.62));
@@ -213,21 +216,32 @@ void printErrors(const Device& device, const TriangleMesh& leaves, const Options
 
 #endif
 
-/// Median wall time of a call and the GL work it starts, in milliseconds.
-double median(const GladGLContext& gl, int runs, const std::function<void()>& call) {
-    call(); // Compiles and allocates.
-    std::vector<double> times;
+/// Median wall times of the stages of a frame, in milliseconds.
+struct FrameTimes {
+    double opaque = 0.0, ranges = 0.0, slicemap = 0.0, stacking = 0.0, shading = 0.0;
+
+    [[nodiscard]] double frame() const { return opaque + ranges + slicemap + stacking + shading; }
+};
+
+FrameTimes measure(StageClock& clock, int runs, const std::function<void()>& frame) {
+    frame(); // Compiles and allocates.
+    std::array<std::vector<double>, 5> times;
     for (int run = 0; run < runs; ++run) {
-        gl.Finish();
-        const auto start = std::chrono::steady_clock::now();
-        call();
-        gl.Finish();
-        times.push_back(
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-                .count());
+        clock.reset();
+        frame();
+        const double ranges = clock.milliseconds("lamina: column ranges");
+        times[0].push_back(clock.milliseconds("lamina: light depths"));
+        times[1].push_back(ranges);
+        times[2].push_back(clock.milliseconds("lamina: voxelize (mrt_slicemap)") - ranges);
+        times[3].push_back(clock.milliseconds("lamina: stack leaf maps"));
+        times[4].push_back(clock.milliseconds("lamina: apply transmittance"));
     }
-    std::ranges::nth_element(times, times.begin() + runs / 2);
-    return times[static_cast<std::size_t>(runs) / 2];
+    const auto median = [runs](std::vector<double>& values) {
+        std::ranges::nth_element(values, values.begin() + runs / 2);
+        return values[static_cast<std::size_t>(runs) / 2];
+    };
+    return {median(times[0]), median(times[1]), median(times[2]), median(times[3]),
+            median(times[4])};
 }
 
 /// Depths of a wavy surface through the crown, so that look-ups stop at all depths.
@@ -246,76 +260,120 @@ GLuint makeDepths(const GladGLContext& gl, std::uint32_t size) {
     return texture;
 }
 
-void printCosts(const Device& device, const example::Tree& tree, const Options& options) {
-    const GladGLContext& gl = device.state()->gl;
+/// What is shaded, and by which casters.
+struct CostScene {
+    std::vector<MeshBuffers> buffers;
+    std::vector<GeometrySource> leaves, wood, all;
+    std::vector<Material> materials;
+    TransmittanceCasters casters;
+    TransmittanceReceiver receiver;
+};
+
+/// Leaves in three parts of a class each.
+CostScene makeCostScene(const Device& device, const example::Tree& tree, std::uint32_t size) {
+    CostScene scene;
+    constexpr std::uint32_t kParts = 3;
+    scene.materials.resize(kParts + 1);
+    for (std::uint32_t part = 0; part < kParts; ++part) {
+        TriangleMesh mesh;
+        mesh.positions = tree.leaves.positions;
+        for (std::size_t i = part; i < tree.leaves.triangles.size(); i += kParts)
+            mesh.triangles.push_back(tree.leaves.triangles[i]);
+        scene.buffers.push_back(check(MeshBuffers::upload(device, mesh)));
+        MeshView view = scene.buffers.back().view();
+        view.materialId = part;
+        scene.materials[part].colorClass = part;
+        scene.leaves.emplace_back(view);
+    }
+    scene.buffers.push_back(check(MeshBuffers::upload(device, tree.wood)));
+    scene.wood.emplace_back(scene.buffers.back().view());
+    scene.all = scene.leaves;
+    scene.all.push_back(scene.wood.front());
+    scene.casters.bounds = tree.leaves.bounds();
+    scene.casters.bounds.extend(tree.wood.bounds().min);
+    scene.casters.bounds.extend(tree.wood.bounds().max);
+    scene.casters.leaves = scene.leaves;
+    scene.casters.opaque = scene.wood;
+    scene.casters.materials = scene.materials;
+
+    scene.receiver.depthTexture = makeDepths(device.state()->gl, size);
+    scene.receiver.view.size = {size, size};
+    const glm::dvec3 center = scene.casters.bounds.center();
+    scene.receiver.view.worldToClip = glm::ortho(-3.0, 3.0, -3.0, 3.0, 0.0, 8.0) *
+                                      glm::lookAt(center + glm::dvec3(0, 4, 0), center, {0, 0, 1});
+    return scene;
+}
+
+FrameTimes timeFrame(const Device& device, StageClock& clock, const CostScene& scene,
+                     const TransmittanceCasters& casters, const TransmittanceDesc& desc,
+                     const TransmittanceLight& light, const TransmittanceSettings& settings,
+                     int runs) {
+    Transmittance transmittance = check(Transmittance::create(device, desc));
+    check(transmittance.setSettings(settings));
+    return measure(clock, runs, [&] {
+        check(transmittance.prepare(light, casters));
+        check(transmittance.apply(scene.receiver));
+    });
+}
+
+void printTimes(const char* name, const FrameTimes& times) {
+    std::printf("%-26s | %10.2f %9.2f %9.2f %9.2f %9.2f %9.2f\n", name, times.opaque, times.ranges,
+                times.slicemap, times.stacking, times.shading, times.frame());
+}
+
+/// [ED06] Table 1 anew. Near and far are made in one pass.
+void printCosts(const Device& device, StageClock& clock, const example::Tree& tree,
+                const Options& options) {
     const std::uint32_t size = options.isQuick ? 64 : 512;
     const int runs = options.isQuick ? 1 : 9;
-    const MeshBuffers leafBuffers = check(MeshBuffers::upload(device, tree.leaves));
-    const MeshBuffers woodBuffers = check(MeshBuffers::upload(device, tree.wood));
-    const GeometrySource leaves[] = {leafBuffers.view()};
-    const GeometrySource wood[] = {woodBuffers.view()};
-    const GeometrySource all[] = {leafBuffers.view(), woodBuffers.view()};
-    TransmittanceCasters none;
-    none.bounds = tree.leaves.bounds();
-    none.bounds.extend(tree.wood.bounds().min);
-    none.bounds.extend(tree.wood.bounds().max);
-    TransmittanceCasters leafCasters = none, woodCasters = none, opaqueCasters = none;
-    leafCasters.leaves = leaves;
-    woodCasters.opaque = wood;
-    opaqueCasters.opaque = all;
-
-    TransmittanceReceiver receiver;
-    receiver.depthTexture = makeDepths(gl, size);
-    receiver.view.size = {size, size};
-    const glm::dvec3 center = none.bounds.center();
-    receiver.view.worldToClip = glm::ortho(-3.0, 3.0, -3.0, 3.0, 0.0, 8.0) *
-                                glm::lookAt(center + glm::dvec3(0, 4, 0), center, {0, 0, 1});
-
+    const CostScene scene = makeCostScene(device, tree, size);
+    const auto printHead = [](const char* what) {
+        std::printf("%-26s | %10s %9s %9s %9s %9s %9s\n", what, "opaque map", "near, far",
+                    "slicemap", "stacking", "shading", "frame");
+    };
     std::printf("\nCost in ms, medians of %d: %zu leaf and %zu wood triangles, %u x %u columns and "
-                "pixels\n"
-                "ranges   slices targets | opaque map   near/far   slicemap   shading   frame\n",
+                "pixels\n",
                 runs, tree.leaves.triangles.size(), tree.wood.triangles.size(), size, size);
-    const auto shading = [&](Transmittance& transmittance, const TransmittanceCasters& casters) {
-        check(transmittance.prepare(sun(), casters));
-        return median(gl, runs, [&] { check(transmittance.apply(receiver)); });
-    };
-    const auto preparing = [&](Transmittance& transmittance, const TransmittanceCasters& casters) {
-        return median(gl, runs, [&] { check(transmittance.prepare(sun(), casters)); });
-    };
-    {
-        Transmittance plain = check(Transmittance::create(device, describe(size, 8, false)));
-        const double map = preparing(plain, opaqueCasters) - preparing(plain, none);
-        const double shaded = shading(plain, opaqueCasters);
-        std::printf("plain shadow map        | %10.2f %10s %10s %9.2f %7.2f\n", map, "-", "-",
-                    shaded, map + shaded);
-    }
+    printHead("");
+    TransmittanceCasters opaque = scene.casters;
+    opaque.leaves = {};
+    opaque.opaque = scene.all;
+    FrameTimes plain = timeFrame(device, clock, scene, opaque, describe(size, 8, false), sun(),
+                                 linearSettings(), runs);
+    plain.slicemap = 0.0; // Empty, and no part of shadow mapping.
+    printTimes("plain shadow map", plain);
+    char name[64];
     for (const SliceLookup lookup : {SliceLookup::Sampled, SliceLookup::Linear}) {
-        std::printf("%s look-ups\n",
-                    lookup == SliceLookup::Sampled ? "sampled" : "linear, filtered");
-        for (const std::uint32_t targets : {1u, 2u, 3u, 8u}) {
-            double uniformTime = 0.0;
+        const bool isSampled = lookup == SliceLookup::Sampled;
+        printHead(isSampled ? "sampled look-ups" : "linear, filtered look-ups");
+        for (const std::uint32_t targets : {1u, 2u, 3u, 8u})
             for (const bool isLocal : {false, true}) {
                 if (options.isQuick && targets > 1)
                     continue;
                 const std::uint32_t slices = 128 * targets;
-                Transmittance transmittance =
-                    check(Transmittance::create(device, describe(size, slices, isLocal)));
-                check(transmittance.setSettings(lookup == SliceLookup::Sampled ? sampledSettings()
-                                                                               : linearSettings()));
-                const double empty = preparing(transmittance, none);
-                const double opaque = preparing(transmittance, woodCasters) - empty;
-                const double slicemap = preparing(transmittance, leafCasters);
-                const double shaded = shading(transmittance, leafCasters);
-                if (!isLocal)
-                    uniformTime = slicemap;
-                std::printf("%-8s %6u %7u | %10.2f %10.2f %10.2f %9.2f %7.2f\n",
-                            isLocal ? "local" : "uniform", slices, targets, opaque,
-                            isLocal ? slicemap - uniformTime : 0.0, uniformTime, shaded,
-                            opaque + slicemap + shaded);
+                std::snprintf(name, sizeof name, "%s, %u target%s, %u",
+                              isLocal ? "local" : "uniform", targets, targets > 1 ? "s" : "",
+                              slices);
+                printTimes(name, timeFrame(device, clock, scene, scene.casters,
+                                           describe(size, slices, isLocal), sun(),
+                                           isSampled ? sampledSettings() : linearSettings(), runs));
             }
-        }
     }
-    gl.DeleteTextures(1, &receiver.depthTexture);
+    printHead("local, 128 slices");
+    TransmittanceLight lamp;
+    lamp.kind = LightKind::Point;
+    lamp.position = scene.casters.bounds.center();
+    for (const std::uint32_t faces : {1u, 6u})
+        for (const std::uint32_t classes : {1u, 3u}) {
+            TransmittanceDesc desc = describe(size, 128, true);
+            desc.maxFaces = faces;
+            desc.classes = classes;
+            std::snprintf(name, sizeof name, "%s, %u class%s", faces == 1 ? "sun" : "lamp, 6 faces",
+                          classes, classes > 1 ? "es" : "");
+            printTimes(name, timeFrame(device, clock, scene, scene.casters, desc,
+                                       faces == 1 ? sun() : lamp, linearSettings(), runs));
+        }
+    device.state()->gl.DeleteTextures(1, &scene.receiver.depthTexture);
 }
 
 } // namespace
@@ -337,8 +395,8 @@ int main(int argc, char** argv) {
         }
     }
     const headless::Context context = check(headless::Context::create({.api = options.api}));
-    const Device device = check(
-        Device::fromCurrentContext([&](const char* name) { return context.getProcAddress(name); }));
+    StageClock clock([&](const char* name) { return context.getProcAddress(name); });
+    const Device device = check(Device::fromCurrentContext(clock.loader()));
     std::printf("%s%s\n", device.info().renderer.c_str(),
                 device.info().isSoftware ? " [software: runs on the CPU]" : "");
     const example::Tree chestnut = options.isQuick
@@ -354,6 +412,6 @@ int main(int argc, char** argv) {
 #else
     std::printf("No errors without ray casting: built without Embree 3 (libembree-dev)\n");
 #endif
-    printCosts(device, chestnut, options);
+    printCosts(device, clock, chestnut, options);
     return 0;
 }

@@ -244,6 +244,7 @@ void SlicemapVoxelizer::bindInputs(const VoxelGrid& grid) const {
 
 void SlicemapVoxelizer::drawRanges(const Plan& plan, GLuint rangeTexture,
                                    gl::RasterStateGuard& guard) {
+    const gl::DebugGroup group(*mDevice, "lamina: column ranges");
     const GladGLContext& gl = mDevice->gl;
     const gl::BlendStateGuard blend(*mDevice, 1, gl::Blending::Minimum);
     const GLuint framebuffer = mFramebuffer.id();
