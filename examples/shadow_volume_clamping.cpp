@@ -19,6 +19,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 
 namespace {
@@ -201,8 +203,10 @@ void run(const Settings& settings) {
         paste(image, colors, size, {(i + 1) % 2, (i + 1) / 2});
 
         const auto found = read<float>(gl, check(volumes.apply()), GL_RED, size);
-        if (i > 0 && found != light)
-            std::printf("%s: the shadow differs\n", steps[i].name);
+        if (i > 0 && found != light) {
+            std::fprintf(stderr, "%s: the shadow differs\n", steps[i].name);
+            std::exit(1);
+        }
         light = found;
         const lamina::ShadowVolumesReport report = check(volumes.downloadReport());
         std::printf("%-18s  casters culled %2u of %u (%u not lit)  receivers not seen %u of %u  "

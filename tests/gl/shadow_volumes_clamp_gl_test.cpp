@@ -5,6 +5,7 @@
 #include <reference/shapes.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace lamina {
 namespace {
@@ -13,6 +14,28 @@ using test::floorPart;
 using test::lookAt;
 using test::SceneHost;
 using test::ScenePart;
+
+/// A plate in y = 0 with a pit of sloped walls about `at`: a light above sees all of it.
+TriangleMesh plateWithPit(const glm::vec2& at, float rim, float floor, float depth) {
+    TriangleMesh mesh;
+    const auto addSquare = [&](const glm::vec2& middle, float half, float y) {
+        for (const auto& [x, z] :
+             {std::pair{-1.0f, -1.0f}, {-1.0f, 1.0f}, {1.0f, 1.0f}, {1.0f, -1.0f}})
+            mesh.positions.emplace_back(middle.x + half * x, y, middle.y + half * z);
+    };
+    addSquare({0.0f, 0.0f}, 5.0f, 0.0f);
+    addSquare(at, rim, 0.0f);
+    addSquare(at, floor, -depth);
+    for (const std::uint32_t ring : {0u, 4u})
+        for (std::uint32_t i = 0; i < 4; ++i) {
+            const std::uint32_t a = ring + i, b = ring + (i + 1) % 4;
+            mesh.triangles.emplace_back(a, b, b + 4);
+            mesh.triangles.emplace_back(a, b + 4, a + 4);
+        }
+    mesh.triangles.emplace_back(8, 9, 10);
+    mesh.triangles.emplace_back(8, 10, 11);
+    return mesh;
+}
 
 class ShadowVolumesClampGlTest : public test::ShadowScenesGlTest {};
 
@@ -63,6 +86,26 @@ TEST_F(ShadowVolumesClampGlTest, AGapFinerThanTheLightsTexelsLetsLightThrough) {
         EXPECT_EQ(differences(lightOf(volumes, VolumeExtent::Kept), whole), 0u) << texels;
         test::savePicture("slit", whole, kSize, 1.0f);
         EXPECT_TRUE(volumes.downloadReport()->keptLayers[2].any()) << texels;
+    }
+}
+
+TEST_F(ShadowVolumesClampGlTest, ThingsInPitsKeepTheirShadows) {
+    // The pit is about two texels of the light's map wide, wherever their centres are. What stands
+    // in it shades its floor and walls.
+    auto volumes = ShadowVolumes::create(device(), {.layers = 64, .lightMapTexels = 16}).value();
+    for (int step = 0; step < 36; ++step) {
+        SCOPED_TRACE(step);
+        const glm::vec2 at(0.11f * static_cast<float>(step % 6),
+                           0.11f * static_cast<float>(step / 6));
+        SceneHost host(device(), {{plateWithPit(at, 0.9f, 0.6f, 0.5f)},
+                                  {reference::makeBox({at.x - 0.55f, -0.35f, at.y - 0.55f},
+                                                      {at.x + 0.55f, -0.3f, at.y + 0.55f})}});
+        const ShadowScene scene =
+            sceneOf(host, lookAt({0.3, 5.0, 4.5}, {0.3, 0.0, 0.3}, kSize), {0.0, 1.0, 0.0, 0.0});
+        ASSERT_TRUE(volumes.prepare(scene));
+        const auto light = lightOf(volumes, VolumeExtent::Whole);
+        EXPECT_NE(std::ranges::count(light, 0.0f), 0);
+        EXPECT_EQ(differences(lightOf(volumes, VolumeExtent::Kept), light), 0u);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "gl/support/shadow_test_scenes.hpp"
 
 #include <reference/shapes.hpp>
+#include <support/court.hpp>
 
 namespace lamina {
 namespace {
@@ -101,6 +102,24 @@ TEST_F(ShadowVolumesSearchGlTest, CountsWhatAKnownSceneHides) {
     EXPECT_EQ(report.receiversCulled, 2u);
     EXPECT_EQ(report.layers, 32u);
     EXPECT_GT(report.stencilFragments, 0u);
+}
+
+TEST_F(ShadowVolumesSearchGlTest, TheCourtTakesAThirdOfTheFill) {
+    std::vector<ScenePart> parts;
+    for (const example::CourtThing& thing : example::makeCourt())
+        parts.push_back({thing.mesh, thing.casts});
+    SceneHost host(device(), std::move(parts));
+    const ShadowScene scene =
+        sceneOf(host, lookAt({3.0, 6.0, 14.0}, {0.3, 0.3, -0.6}, kSize), {example::kCourtSun, 0.0});
+    auto volumes = ShadowVolumes::create(device(), {.layers = 48}).value();
+    ASSERT_TRUE(volumes.prepare(scene));
+    EXPECT_EQ(
+        differences(lightOf(volumes, VolumeExtent::Kept), lightOf(volumes, VolumeExtent::Whole)),
+        0u);
+    const auto report = volumes.downloadReport().value();
+    EXPECT_EQ(report.casters, 73u);
+    EXPECT_GT(report.castersCulled, 8u);
+    EXPECT_GT(report.stencilFragmentsWhole, 3 * report.stencilFragments);
 }
 
 } // namespace

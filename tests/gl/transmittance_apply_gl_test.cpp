@@ -1,5 +1,6 @@
 // apply() over what a host has drawn, host shadow maps, GL state and errors.
 
+#include "gl/state_guard.hpp"
 #include "gl/support/gl_state.hpp"
 #include "gl/support/host_draw.hpp"
 #include "gl/support/transmittance_probe.hpp"
@@ -295,25 +296,73 @@ TEST_F(TransmittanceApplyGlTest, HostShadowMapsOfAllKinds) {
     gl().DeleteProgram(program);
 }
 
-TEST_F(TransmittanceApplyGlTest, LeavesOddStateAsItWas) {
-    for (const TransmittanceModel model :
-         {TransmittanceModel::LeafCount, TransmittanceModel::Absorption}) {
-        const gl::Texture depth = texture(GL_DEPTH_COMPONENT32F);
+TEST_F(TransmittanceApplyGlTest, LeavesOddStateAsItWasAndHeedsNoneOfIt) {
+    struct Case {
+        TransmittanceDesc desc;
+        LightKind kind = LightKind::Directional;
+    };
+    std::vector<Case> cases{
+        {{.size = {32, 32, 64}}},
+        {{.model = TransmittanceModel::Absorption, .size = {32, 32, 64}}},
+        {{.size = {32, 32, 160}, .localRanges = true, .classes = 3, .maxFaces = 6},
+         LightKind::Point}};
+    std::vector<Material> materials(1);
+    materials[0].absorption = 0.3f;
+    materials[0].colorClass = 0;
+    for (const Case& test : cases) {
+        mLight.kind = test.kind;
+        mLight.position = {-0.7, 2.4, -0.6};
+        TransmittanceCasters all = casters();
+        all.materials = materials;
+        auto usual = Transmittance::create(device(), test.desc).value();
+        ASSERT_TRUE(usual.prepare(mLight, all));
+        const Drawn drawn = drawScene(usual);
+        const TransmittanceReceiver receiver{mView, drawn.depth.id(), drawn.normals.id()};
+        const auto expected = read(usual.apply(receiver).value());
+        ASSERT_GT(
+            shareBeyond(expected, std::vector<glm::vec4>(expected.size(), glm::vec4(1.0f)), 0.1f),
+            0.01);
+
         LightDepthMap map;
-        map.texture = depth.id();
-        const test::OddGlState odd(gl());
-        const auto before = test::readGlState(gl());
-        auto transmittance =
-            Transmittance::create(device(), {.model = model, .size = {32, 32, 64}}).value();
-        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());
-        ASSERT_TRUE(transmittance.prepare(mLight, casters()));
-        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());
-        TransmittanceCasters hosts = casters();
-        hosts.opaqueMap = &map;
-        ASSERT_TRUE(transmittance.prepare(mLight, hosts));
-        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());
-        ASSERT_TRUE(transmittance.apply({mView, depth.id()}));
-        EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty());
+        map.texture = drawn.depth.id();
+        std::vector<glm::vec4> found;
+        {
+            const test::OddGlState odd(gl());
+            const auto before = test::readGlState(gl());
+            const auto expectUnchanged = [&](const char* what) {
+                EXPECT_THAT(test::differences(before, test::readGlState(gl())), testing::IsEmpty())
+                    << what;
+                EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR)) << what;
+            };
+            std::optional<Transmittance> transmittance(
+                Transmittance::create(device(), test.desc).value());
+            expectUnchanged("create");
+            ASSERT_TRUE(transmittance->setSettings({}));
+            expectUnchanged("setSettings");
+            if (test.kind == LightKind::Directional) {
+                TransmittanceCasters hosts = all;
+                hosts.opaqueMap = &map;
+                ASSERT_TRUE(transmittance->prepare(mLight, hosts));
+                expectUnchanged("prepare with a host map");
+            }
+            ASSERT_TRUE(transmittance->prepare(mLight, all));
+            expectUnchanged("prepare");
+            EXPECT_FALSE(transmittance->prepare(mLight, {}));
+            expectUnchanged("failed prepare");
+            ASSERT_TRUE(transmittance->prepare(mLight, all));
+            const auto applied = transmittance->apply(receiver);
+            ASSERT_TRUE(applied);
+            expectUnchanged("apply");
+            EXPECT_FALSE(transmittance->apply({mView, 0}));
+            expectUnchanged("failed apply");
+            {
+                const gl::PixelPackGuard pack(*device().state());
+                found = read(*applied);
+            }
+            transmittance.reset();
+            expectUnchanged("destruction");
+        }
+        EXPECT_TRUE(found == expected);
     }
 }
 
