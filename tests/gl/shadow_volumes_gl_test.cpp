@@ -44,6 +44,36 @@ std::vector<ScenePart> openScene() {
     return parts;
 }
 
+/// A closed prism about an axis, of many facets along it.
+TriangleMesh makePrism(const glm::dvec3& center, const glm::dvec3& axis, double radius,
+                       double length) {
+    constexpr std::uint32_t kSides = 48, kRings = 9;
+    const glm::dvec3 along = glm::normalize(axis);
+    const glm::dvec3 u = glm::normalize(glm::cross(along, glm::dvec3(0.3, 0.2, 1.0)));
+    const glm::dvec3 v = glm::cross(along, u);
+    TriangleMesh mesh;
+    for (std::uint32_t ring = 0; ring < kRings; ++ring)
+        for (std::uint32_t side = 0; side < kSides; ++side) {
+            const double angle = 6.283185307179586 * side / kSides;
+            mesh.positions.emplace_back(
+                center + length * (static_cast<double>(ring) / (kRings - 1) - 0.5) * along +
+                radius * (std::cos(angle) * u + std::sin(angle) * v));
+        }
+    for (std::uint32_t ring = 0; ring + 1 < kRings; ++ring)
+        for (std::uint32_t side = 0; side < kSides; ++side) {
+            const std::uint32_t a = ring * kSides + side;
+            const std::uint32_t b = ring * kSides + (side + 1) % kSides;
+            mesh.triangles.emplace_back(a, b, b + kSides);
+            mesh.triangles.emplace_back(a, b + kSides, a + kSides);
+        }
+    const std::uint32_t last = (kRings - 1) * kSides;
+    for (std::uint32_t side = 1; side + 1 < kSides; ++side) {
+        mesh.triangles.emplace_back(0, side + 1, side);
+        mesh.triangles.emplace_back(last, last + side, last + side + 1);
+    }
+    return mesh;
+}
+
 class ShadowVolumesGlTest : public test::GlTest {
 protected:
     std::vector<float> light(ShadowVolumes& volumes, SceneHost& host, const View& view,
@@ -101,6 +131,18 @@ TEST_F(ShadowVolumesGlTest, ALightInsideASheetIsShutIn) {
     const View view = lookAt({0.5, 4.0, 6.0}, {0.1, 0.6, 0.3}, kSize);
     const glm::dvec4 inSphere{1.2, 1.4, 0.3, 1.0};
     expectShadows("light_in_sphere", host, view, inSphere);
+}
+
+TEST_F(ShadowVolumesGlTest, FacetsThatTheLightGrazesLeakNothing) {
+    // Rounding decides which facets along the sun's rays cast: each edge must find the same ones.
+    const View view = lookAt({0.5, 4.0, 6.0}, {0.1, 0.6, 0.3}, kSize);
+    for (const glm::dvec3& sun :
+         {glm::dvec3(0.5, 1.0, 0.3), {-0.71, 0.9, 0.13}, {0.3, 0.8, -0.6}}) {
+        SceneHost host(device(), {{reference::makePlane({0, 0, 0}, {0, 1, 0}, 24.0f), false},
+                                  {makePrism({0.0, 1.3, 0.4}, sun, 0.8, 1.0)}});
+        EXPECT_TRUE(host.casters().front().topology->isClosed());
+        expectShadows("prism", host, view, glm::dvec4(sun, 0.0));
+    }
 }
 
 TEST_F(ShadowVolumesGlTest, EveryDepthConventionShowsTheSameShadows) {
