@@ -145,19 +145,22 @@ TEST_F(TransmittanceQuadsGlTest, EachClassHasItsColour) {
         const auto stats = transmittance.prepare(sun(), all);
         ASSERT_TRUE(stats) << stats.error().text;
         EXPECT_EQ(stats->passes, local ? 2u : 1u);
-        ASSERT_TRUE(transmittance.setSettings(settings));
-        const test::ProbePoint points[] = {
-            {{0, 0, -1.5}}, {{0, 0, -2.5}}, {{0, 0, -3.5}}, {{0, 0, -12}}};
-        const int counts[][3] = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {3, 1, 2}};
-        const auto found = probe(transmittance, points);
-        for (int i = 0; i < 4; ++i)
-            for (int channel = 0; channel < 3; ++channel) {
-                double expected = 1.0;
-                for (std::size_t c = 0; c < 3; ++c)
-                    expected *= std::pow(1.0 - settings.attenuation[c][channel], counts[i][c]);
-                EXPECT_NEAR(found[static_cast<std::size_t>(i)][channel], expected, kRounding)
-                    << i << ' ' << channel;
-            }
+        for (const SliceLookup lookup : {SliceLookup::Sampled, SliceLookup::Linear}) {
+            settings.slices = lookup;
+            ASSERT_TRUE(transmittance.setSettings(settings));
+            const test::ProbePoint points[] = {
+                {{0, 0, -1.85}}, {{0, 0, -2.85}}, {{0, 0, -3.85}}, {{0, 0, -12}}};
+            const int counts[][3] = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {3, 1, 2}};
+            const auto found = probe(transmittance, points);
+            for (int i = 0; i < 4; ++i)
+                for (int channel = 0; channel < 3; ++channel) {
+                    double expected = 1.0;
+                    for (std::size_t c = 0; c < 3; ++c)
+                        expected *= std::pow(1.0 - settings.attenuation[c][channel], counts[i][c]);
+                    EXPECT_NEAR(found[static_cast<std::size_t>(i)][channel], expected, kRounding)
+                        << i << ' ' << channel;
+                }
+        }
     }
 }
 
