@@ -228,6 +228,36 @@ TEST_F(TransmittanceQuadsGlTest, OpaqueCastersDecideFirst) {
     EXPECT_EQ(probe(transmittance, points)[2], glm::vec3(1.0f));
 }
 
+TEST_F(TransmittanceQuadsGlTest, OpaqueFilterAveragesLitTexels) {
+    // A leaf over all, and an opaque wall where x < 0: its edge lies between two texels of the map.
+    addQuads(1);
+    const auto wall =
+        MeshBuffers::upload(device(), reference::makePlane({-1.0f, 0.0f, -5.0f}, {0, 0, 1}, 2.0f))
+            .value();
+    const GeometrySource opaque[] = {wall.view(glm::scale(glm::mat4(1.0f), {1.0f, 2.0f, 1.0f}))};
+    TransmittanceCasters all = casters();
+    all.opaque = opaque;
+    TransmittanceDesc desc = descOf(128, false);
+    desc.opaqueMapTexels = 64;
+    Transmittance transmittance = make(desc);
+    ASSERT_TRUE(transmittance.prepare(sun(), all));
+    std::vector<test::ProbePoint> points;
+    for (int i = 0; i < 100; ++i)
+        points.push_back({{-0.6 + 0.0117 * i, 0.1, -9.0}});
+    for (const float width : {0.0f, 1.0f, 2.0f, 7.0f}) {
+        TransmittanceSettings settings = plain(kSigma);
+        settings.opaqueFilterWidth = width;
+        ASSERT_TRUE(transmittance.setSettings(settings));
+        const auto found = probe(transmittance, points);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const double texels = points[i].position.x * 64.0 / 4.0;
+            const double share = width == 0.0f ? (texels > 0.0 ? 1.0 : 0.0)
+                                               : std::clamp(0.5 + texels / width, 0.0, 1.0);
+            EXPECT_NEAR(found[i].x, share * (1.0 - kSigma), 1e-4) << width << ' ' << i;
+        }
+    }
+}
+
 TEST_F(TransmittanceQuadsGlTest, LeavesFromTheHostsVertexStage) {
     DrawSource source;
     source.vertexShader = R"(
