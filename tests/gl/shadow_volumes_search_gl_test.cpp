@@ -14,6 +14,13 @@ using test::lookAt;
 using test::SceneHost;
 using test::ScenePart;
 
+std::vector<ScenePart> courtParts() {
+    std::vector<ScenePart> parts;
+    for (const example::CourtThing& thing : example::makeCourt())
+        parts.push_back({thing.mesh, thing.casts});
+    return parts;
+}
+
 class ShadowVolumesSearchGlTest : public test::ShadowScenesGlTest {};
 
 TEST_F(ShadowVolumesSearchGlTest, QueriesKeepWhatTheReductionKeeps) {
@@ -40,6 +47,36 @@ TEST_F(ShadowVolumesSearchGlTest, QueriesKeepWhatTheReductionKeeps) {
     forAllInShadow(check);
     EXPECT_GT(kept, 0u);
     EXPECT_LT(kept, layers);
+}
+
+TEST_F(ShadowVolumesSearchGlTest, WhereTheSearchesRoundDifferentlyBothAreRight) {
+    // Many casters, small texels of the light's map, many pixels: here and there a triangle passes
+    // the limit of a test by less than rounding, and the two programs differ (on llvmpipe in one of
+    // 2336 layers). The limits leave room: no shadow may depend on it.
+    SceneHost host(device(), courtParts());
+    View view;
+    view.size = {960, 640};
+    view.worldToClip =
+        glm::perspective(0.62, 1.5, 0.5, 80.0) *
+        glm::lookAt(glm::dvec3(4.0, 6.5, 19.0), glm::dvec3(0.3, 0.3, -0.6), glm::dvec3(0, 1, 0));
+    const ShadowScene scene = sceneOf(host, view, {-3.0, 7.0, 1.0, 1.0});
+    ShadowVolumesDesc desc;
+    desc.lightMapTexels = 1024;
+    auto reduction = ShadowVolumes::create(device(), desc).value();
+    desc.search = LayerSearch::Queries;
+    auto queries = ShadowVolumes::create(device(), desc).value();
+    std::vector<std::vector<std::bitset<128>>> kept;
+    for (ShadowVolumes* volumes : {&reduction, &queries}) {
+        ASSERT_TRUE(volumes->prepare(scene));
+        const auto whole =
+            test::readRed(gl(), volumes->apply(VolumeExtent::Whole).value(), view.size);
+        EXPECT_TRUE(test::readRed(gl(), volumes->apply().value(), view.size) == whole);
+        kept.push_back(volumes->downloadReport()->keptLayers);
+    }
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < kept[0].size(); ++i)
+        different += (kept[0][i] ^ kept[1][i]).count();
+    EXPECT_LE(different, 4u);
 }
 
 TEST_F(ShadowVolumesSearchGlTest, EachStepKeepsLess) {
@@ -105,10 +142,7 @@ TEST_F(ShadowVolumesSearchGlTest, CountsWhatAKnownSceneHides) {
 }
 
 TEST_F(ShadowVolumesSearchGlTest, TheCourtTakesAThirdOfTheFill) {
-    std::vector<ScenePart> parts;
-    for (const example::CourtThing& thing : example::makeCourt())
-        parts.push_back({thing.mesh, thing.casts});
-    SceneHost host(device(), std::move(parts));
+    SceneHost host(device(), courtParts());
     const ShadowScene scene =
         sceneOf(host, lookAt({3.0, 6.0, 14.0}, {0.3, 0.3, -0.6}, kSize), {example::kCourtSun, 0.0});
     auto volumes = ShadowVolumes::create(device(), {.layers = 48}).value();

@@ -22,7 +22,9 @@ enum class LayerSearch : std::uint8_t {
     /// "Ideal": one draw of each caster ORs the bits of all layers into its mask.
     Reduction,
     /// "Practical": an occlusion query for each caster and layer. The results never come to the
-    /// host; the GPU reads them (query buffers). Drivers may wait for them inside.
+    /// host; the GPU reads them (query buffers). Drivers may wait for them inside. Keeps the layers
+    /// that Reduction keeps; but where a triangle passes the limit of a test by less than rounding
+    /// the two may differ, without effect on shadows: the limits leave room for it.
     Queries
 };
 
