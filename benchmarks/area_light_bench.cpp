@@ -183,7 +183,7 @@ void printNaiveTable(const Device& device, const Scene& scene, const Scene& pixe
         const int frames = lights > 64 ? 1 : 2;
         const Stages ours = measureStages(device, desc, scene, pixel, sources, frames);
         desc.maps = ShadowMaps::Rendered;
-        desc.layout = VolumeLayout::Separate;
+        desc.layout = ShadowVolumeLayout::Separate;
         const Stages naive = measureStages(device, desc, scene, pixel, sources, frames);
         std::printf("| %u |", lights);
         const auto pair = [](double slow, double fast) {
@@ -206,7 +206,7 @@ void printProfile(const Device& device, const Scene& scene, const Scene& pixel, 
     AreaLightDesc desc;
     desc.virtualLights = lights;
     desc.maps = ShadowMaps::Rendered;
-    desc.layout = VolumeLayout::Separate;
+    desc.layout = ShadowVolumeLayout::Separate;
     const Stages work = measureStages(device, desc, scene, pixel, sources, 2);
     desc.voxels = {1, 1, 128};
     desc.mapTexels = 4;

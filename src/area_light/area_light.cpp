@@ -107,7 +107,7 @@ struct AreaLight::Impl {
                                                  const Medium& medium, Sources sources);
     /// Grids that a plan's volumes take.
     [[nodiscard]] std::size_t gridCount(const Plan& plan) const {
-        return desc.layout == VolumeLayout::Separate ? plan.transforms.size() : 1;
+        return desc.layout == ShadowVolumeLayout::Separate ? plan.transforms.size() : 1;
     }
     [[nodiscard]] Result<std::vector<LightDepthMap>>
     makeImperfectMaps(const Plan& plan, std::span<const GeometrySource> sources);
@@ -290,7 +290,7 @@ Result<AreaLight> AreaLight::create(const Device& device, const AreaLightDesc& d
                                        std::move(*voxelizer), std::move(*maps));
     const EpipolarLayout layout{desc.bitsPerTexel, desc.alphaBias, desc.phiBias,
                                 desc.epipoleVoxels};
-    const bool isSeparate = desc.layout == VolumeLayout::Separate;
+    const bool isSeparate = desc.layout == ShadowVolumeLayout::Separate;
     for (std::uint32_t i = 0; i < (isSeparate ? desc.virtualLights : 1); ++i) {
         auto grid = EpipolarGrid::create(device, layout);
         if (!grid)
@@ -336,7 +336,7 @@ Result<void> AreaLight::apply(const View& view, const SurfaceTextures& surfaces,
 
 void AreaLight::bind(std::uint32_t volumeBinding, std::uint32_t volumeUnit,
                      std::uint32_t lightBinding) const {
-    if (mImpl->current.lights.empty() || mImpl->desc.layout == VolumeLayout::Separate)
+    if (mImpl->current.lights.empty() || mImpl->desc.layout == ShadowVolumeLayout::Separate)
         return;
     mImpl->grids.front().bind(volumeBinding, volumeUnit);
     const GLuint lights = mImpl->lights.id();
@@ -347,7 +347,7 @@ std::span<const VirtualLight> AreaLight::virtualLights() const {
     return mImpl->current.lights;
 }
 std::span<const EpipolarGrid> AreaLight::volumes() const {
-    const bool isSeparate = mImpl->desc.layout == VolumeLayout::Separate;
+    const bool isSeparate = mImpl->desc.layout == ShadowVolumeLayout::Separate;
     return {mImpl->grids.data(), isSeparate ? mImpl->current.lights.size() : 1};
 }
 AreaLightTimes AreaLight::times() {

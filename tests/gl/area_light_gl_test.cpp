@@ -286,7 +286,7 @@ TEST_F(AreaLightGlTest, SeparateVolumesGiveTheTiledOnesPicture) {
     desc.voxels = {64, 48, 160};
     desc.maps = ShadowMaps::Rendered;
     const AreaLight tiled = lit(desc, scene, television(), fog());
-    desc.layout = VolumeLayout::Separate;
+    desc.layout = ShadowVolumeLayout::Separate;
     const AreaLight separate = lit(desc, scene, television(), fog());
     EXPECT_EQ(tiled.volumes().size(), 1u);
     ASSERT_EQ(separate.volumes().size(), 12u);

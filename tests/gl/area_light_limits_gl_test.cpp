@@ -115,7 +115,8 @@ TEST_F(AreaLightLimitsGlTest, Frames256LightsTakeNoMemoryAfterTheFirst) {
 
 TEST_F(AreaLightLimitsGlTest, AllMemoryIsReported) {
     for (const ShadowMaps maps : {ShadowMaps::Imperfect, ShadowMaps::Rendered})
-        for (const VolumeLayout layout : {VolumeLayout::Tiled, VolumeLayout::Separate}) {
+        for (const ShadowVolumeLayout layout :
+             {ShadowVolumeLayout::Tiled, ShadowVolumeLayout::Separate}) {
             AreaLightDesc desc = smallDesc();
             desc.maps = maps;
             desc.layout = layout;
@@ -338,14 +339,14 @@ TEST_F(AreaLightLimitsGlTest, TinyViewsAndFewLightsLoseNoLight) {
     struct Case {
         glm::uvec2 size;
         std::uint32_t lights;
-        VolumeLayout layout;
+        ShadowVolumeLayout layout;
     };
     // Too few pixels, lights or lights a volume for ninths of them.
-    const Case cases[] = {{{1, 1}, 30, VolumeLayout::Tiled},
-                          {{2, 5}, 30, VolumeLayout::Tiled},
-                          {{5, 2}, 1, VolumeLayout::Tiled},
-                          {{9, 7}, 8, VolumeLayout::Tiled},
-                          {{9, 7}, 10, VolumeLayout::Separate}};
+    const Case cases[] = {{{1, 1}, 30, ShadowVolumeLayout::Tiled},
+                          {{2, 5}, 30, ShadowVolumeLayout::Tiled},
+                          {{5, 2}, 1, ShadowVolumeLayout::Tiled},
+                          {{9, 7}, 8, ShadowVolumeLayout::Tiled},
+                          {{9, 7}, 10, ShadowVolumeLayout::Separate}};
     for (const Case& test : cases) {
         SCOPED_TRACE(testing::Message() << test.size.x << " x " << test.size.y << " pixels, "
                                         << test.lights << " lights");

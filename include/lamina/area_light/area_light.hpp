@@ -30,7 +30,7 @@ enum class ShadowMaps : std::uint8_t {
 };
 
 /// How shadow volumes are made.
-enum class VolumeLayout : std::uint8_t {
+enum class ShadowVolumeLayout : std::uint8_t {
     Tiled,    ///< All in one texture, by one pass a stage ([WD13] 3.1).
     Separate, ///< Each by its own passes: the naive way of [WD13] 3, for comparison.
 };
@@ -45,7 +45,7 @@ enum class AirlightForm : std::uint8_t {
 enum class GatherMode : std::uint8_t {
     Full,
     /// A ninth of the lights a pixel, then a bilateral filter over 3 x 3 pixels. Fewer than 9
-    /// lights, and those of VolumeLayout::Separate, are all gathered at every pixel.
+    /// lights, and those of ShadowVolumeLayout::Separate, are all gathered at every pixel.
     Interleaved,
     Quarter, ///< Every second pixel in x and y, then a bilateral upsample.
 };
@@ -65,7 +65,7 @@ struct AreaLightDesc {
     std::uint32_t mapTexels = 128; ///< A side of each shadow map.
     ShadowMaps maps = ShadowMaps::Automatic;
     ImperfectMaps imperfect;
-    VolumeLayout layout = VolumeLayout::Tiled;
+    ShadowVolumeLayout layout = ShadowVolumeLayout::Tiled;
     AirlightForm airlight = AirlightForm::Weighted;
     GatherMode gather = GatherMode::Full;
     bool interpolate = true; ///< Between samples of theta, and for surfaces of phi.
@@ -120,7 +120,7 @@ struct AreaLightStats {
 enum class AreaLightStage : std::uint8_t {
     Lights,   ///< Strength of the virtual lights.
     Maps,     ///< Shadow maps: drawn, or point samples, splats and hole filling.
-    Voxelize, ///< Rectification (with VolumeLayout::Separate and drawn maps: and their drawing).
+    Voxelize, ///< Rectification; of ShadowVolumeLayout::Separate and drawn maps, their drawing too.
     Scan,
     Gather,
     Composite,
@@ -155,10 +155,10 @@ public:
     /// Errors: InvalidArgument (view, medium or light unsound, a MeshView that does not fit its
     /// buffers, a light at the eye), DeviceLimit, OutOfMemory, ShaderError; apply() then still has
     /// the lights and volumes of the last frame, unless memory for other volumes came first.
-    /// Memory is found before any work on the GPU starts (but for VolumeLayout::Separate, and for
-    /// what a DrawSource without maxTriangles draws).
-    /// Cost: for Imperfect maps a capture of the geometry and work by the number of points; for
-    /// Rendered ones a draw of the geometry for each virtual light and more.
+    /// Memory is found before any work on the GPU starts (but for ShadowVolumeLayout::Separate, and
+    /// for what a DrawSource without maxTriangles draws). Cost: for Imperfect maps a capture of the
+    /// geometry and work by the number of points; for Rendered ones a draw of the geometry for each
+    /// virtual light and more.
     [[nodiscard]] Result<AreaLightStats> prepare(const View& view, const LightSource& light,
                                                  const Medium& medium,
                                                  std::span<const GeometrySource> sources);
@@ -183,7 +183,7 @@ public:
 
     /// Binds what lamina/area_light.glsl reads: shadow volumes (LAMINA_EPIPOLAR_BLOCK_BINDING,
     /// LAMINA_EPIPOLAR_TEXTURE_UNIT) and lights (LAMINA_AREA_LIGHT_BLOCK_BINDING). Nothing before
-    /// prepare(), or with VolumeLayout::Separate. GL: the caller restores these bindings.
+    /// prepare(), or with ShadowVolumeLayout::Separate. GL: the caller restores these bindings.
     void bind(std::uint32_t volumeBinding, std::uint32_t volumeUnit,
               std::uint32_t lightBinding) const;
 
