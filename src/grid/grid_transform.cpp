@@ -29,6 +29,12 @@ Result<void> checkSize(const glm::uvec3& size) {
         return invalid("expected at least one voxel along each axis, found " +
                        std::to_string(size.x) + " x " + std::to_string(size.y) + " x " +
                        std::to_string(size.z));
+    constexpr std::uint32_t kMost = std::numeric_limits<std::int32_t>::max();
+    if (size.x > kMost || size.y > kMost || size.z > kMost)
+        return invalid("expected at most " + std::to_string(kMost) +
+                       " voxels along each axis, found " + std::to_string(size.x) + " x " +
+                       std::to_string(size.y) + " x " + std::to_string(size.z) +
+                       "; use fewer voxels");
     return {};
 }
 

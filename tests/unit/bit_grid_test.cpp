@@ -236,7 +236,7 @@ TEST(BitGrid, LocalRangesThatDoNotFitAreNamed) {
 }
 
 TEST(BitGrid, TooLargeForTheHostIsAnError) {
-    const auto huge = BitGrid::create(boxGrid({4000000000u, 4000000000u, 4000000000u}));
+    const auto huge = BitGrid::create(boxGrid({2000000000u, 2000000000u, 2000000000u}));
     ASSERT_FALSE(huge);
     EXPECT_EQ(huge.error().code, ErrorCode::OutOfMemory);
     EXPECT_THAT(huge.error().text, HasSubstr("MiB"));

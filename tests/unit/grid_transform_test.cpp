@@ -219,6 +219,11 @@ TEST(GridTransform, BadInputIsNamed) {
     EXPECT_THAT(boxError({}, {2, 2, 2}), HasSubstr("min < max on each axis"));
     EXPECT_THAT(boxError({{0, 0, kNan}, {1, 1, 1}}, {2, 2, 2}), HasSubstr("finite box"));
     EXPECT_THAT(boxError(kBox, {2, 0, 2}), HasSubstr("found 2 x 0 x 2"));
+    EXPECT_THAT(boxError(kBox, {3, 3, 4294967295u}),
+                HasSubstr("at most 2147483647 voxels along each axis, found 3 x 3 x 4294967295"));
+    EXPECT_TRUE(GridTransform::box(kBox, {3, 3, 2147483647u}));
+    EXPECT_THAT(GridTransform::box(kBox, {2, 2, 2})->withSlices(2147483648u).error().text,
+                HasSubstr("found 2 x 2 x 2147483648"));
     EXPECT_THAT(GridTransform::box(kBox, {2, 2, 2}, static_cast<Axis>(9)).error().text,
                 HasSubstr("expected axis X, Y or Z, found value 9"));
 

@@ -103,7 +103,7 @@ public:
     /// A grid over an axis-aligned world box, columns along `axis`.
     /// voxels: counts along world x, y, z. Slices go along +axis; columns x, y of the grid are the
     /// two axes that follow `axis` cyclically (X: y,z; Y: z,x; Z: x,y). Errors: InvalidArgument
-    /// (non-finite or zero-size box, zero counts).
+    /// (non-finite or zero-size box, zero counts, counts above 2^31 - 1).
     [[nodiscard]] static Result<GridTransform>
     box(const Box3& world, const glm::uvec3& voxels, Axis axis = Axis::Z,
         const SliceDistribution& distribution = SliceDistribution::linear());
@@ -111,7 +111,8 @@ public:
     /// A grid whose columns are the pixels of `camera`.
     /// size: columns in x, columns in y, slices.
     /// Errors: InvalidArgument (near >= far, near <= 0 for perspective or logarithmic, empty
-    /// window, singular or non-affine worldToEye, zero counts, custom boundaries that do not fit).
+    /// window, singular or non-affine worldToEye, counts as for box(), custom boundaries that do
+    /// not fit).
     [[nodiscard]] static Result<GridTransform>
     camera(const GridCamera& camera, const glm::uvec3& size,
            const SliceDistribution& distribution = SliceDistribution::linear());
