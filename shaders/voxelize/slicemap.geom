@@ -4,7 +4,8 @@
 //   1. drop it if it is not finite or lies outside the depths of this pass;
 //   2. project it to columns and work out its exact edges and depth plane (LaminaColumnTriangle);
 //   3. emit a polygon that covers the centres of its columns, widened by `dilation.x` pixels, so that
-//      the rasterizer's sub-pixel snapping loses none; the fragment stage decides coverage exactly.
+//      the rasterizer's sub-pixel snapping loses none; the fragment stage decides coverage exactly. Of a
+//      triangle that reaches far beyond the grid, the part of its box in it.
 //      Every column inside the polygon gets exactly one fragment: Solid counts them.
 // Conservative: the columns whose squares the triangle touches, degenerate projections (edge-on
 // triangles) included. Else the columns whose centres it owns; edge-on triangles own none and are dropped.
@@ -16,6 +17,7 @@
 #define LAMINA_STAGE out
 #include <voxelize/column_stage.glsl>
 #include <voxelize/slicemap_split.glsl>
+#include <voxelize/large_triangle.glsl>
 
 layout(triangles) in;
 #if LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE
@@ -53,6 +55,14 @@ void emit(dvec2 column) {
 #endif
     gl_Position = vec4(vec2(column * (2.0lf / dvec2(laminaDraw.size.xy)) - 1.0lf), 0.0, 1.0);
     EmitVertex();
+}
+
+// Does the edge leave all of the grid, and a column around it, outside?
+bool gridIsBeyond(dvec4 edge) {
+    dvec2 size = dvec2(laminaDraw.size.xy) + 1.0lf;
+    // Of all points there, this one has the greatest value.
+    dvec2 corner = dvec2(edge.w > 0.0lf ? -1.0lf : size.x, edge.z > 0.0lf ? size.y : -1.0lf);
+    return laminaEdgeValue(edge, corner) < 0.0lf;
 }
 
 void emitRectangle(dvec2 low, dvec2 high) {
@@ -107,8 +117,8 @@ int normalQuadrant(dvec2 along) {
 
 // The hull of the squares of 2 `radius` about the corners of a triangle: at each corner, the square's
 // corners between the quadrants of the normals of the edges before and after it; four in all, for the
-// normals turn once around.
-void emitHull(dvec2 p[3], double radius) {
+// normals turn once around. Against the clock; returns how many.
+int hullOf(dvec2 p[3], double radius, out dvec2 hull[7]) {
     dvec2 u = p[1] - p[0];
     dvec2 v = p[2] - p[0];
     double orientation = u.x * v.y - u.y * v.x;
@@ -122,7 +132,6 @@ void emitHull(dvec2 p[3], double radius) {
     } else if (orientation < 0.0lf) {
         corners = dvec2[](corners[1], corners[0], corners[2]);
     }
-    dvec2 hull[7];
     int count = 0;
     for (int i = 0; i < cornerCount; ++i) {
         dvec2 before = corners[i] - corners[(i + cornerCount - 1) % cornerCount];
@@ -134,19 +143,30 @@ void emitHull(dvec2 p[3], double radius) {
             hull[count++] = corners[i] + radius * dvec2(corner == 0 || corner == 3 ? 1.0lf : -1.0lf, corner <= 1 ? 1.0lf : -1.0lf);
         }
     }
-    for (int i = 0; i < count; ++i)
-        emit(hull[(i & 1) == 0 ? i >> 1 : count - 1 - (i >> 1)]);
-    EndPrimitive();
+    return count;
 }
 
-void emitCover(dvec2 p[3], dvec2 low, dvec2 high) {
+// Emitted at one place: software GL runs both branches of everything.
+void emitCover(dvec2 p[3], dvec2 low, dvec2 high, bool isLarge) {
     dvec2 farthest = max(abs(low), abs(high));
     double radius = dilationRadius(max(farthest.x, farthest.y));
     dvec2 size = high - low + 1.0lf;
-    if (size.x * size.y <= kSmallBox || min(size.x, size.y) <= 1.0lf + kNarrow)
-        emitClampedRectangle(low - radius, high + radius);
-    else
-        emitHull(p, radius);
+    dvec2 hull[7];
+    int count;
+    if (isLarge || size.x * size.y <= kSmallBox || min(size.x, size.y) <= 1.0lf + kNarrow) {
+        low = clamp(low - radius, dvec2(0.0lf), dvec2(laminaDraw.size.xy));
+        high = clamp(high + radius, dvec2(0.0lf), dvec2(laminaDraw.size.xy));
+        hull[0] = low;
+        hull[1] = dvec2(high.x, low.y);
+        hull[2] = high;
+        hull[3] = dvec2(low.x, high.y);
+        count = low.x < high.x && low.y < high.y ? 4 : 0;
+    } else {
+        count = hullOf(p, radius, hull);
+    }
+    for (int i = 0; i < count; ++i)
+        emit(hull[(i & 1) == 0 ? i >> 1 : count - 1 - (i >> 1)]);
+    EndPrimitive();
 }
 #else
 vec2 unitNormal(dvec4 edge) {
@@ -155,33 +175,42 @@ vec2 unitNormal(dvec4 edge) {
 }
 
 // A triangle in front of the eye: its three edges moved outwards, or, where that would make a spike,
-// the rectangle around its longest edge.
-void emitCover(dvec2 p[3], dvec2 lowest, dvec2 highest) {
+// the rectangle around its longest edge; of a large one, its box in the grid. Emitted at one place: software
+// GL runs both branches of everything.
+void emitCover(dvec2 p[3], dvec2 lowest, dvec2 highest, bool isLarge) {
     dvec2 farthest = max(abs(lowest), abs(highest));
     float radius = float(dilationRadius(max(farthest.x, farthest.y)));
     vec2 normals[3] = vec2[](unitNormal(triangle.edges[0]), unitNormal(triangle.edges[1]), unitNormal(triangle.edges[2]));
     vec3 miter = 1.0 + vec3(dot(normals[2], normals[0]), dot(normals[0], normals[1]), dot(normals[1], normals[2]));
-    if (min(miter.x, min(miter.y, miter.z)) > 1.0e-4) {
-        emit(p[0] + dvec2((normals[2] + normals[0]) * (radius / miter.x)));
-        emit(p[1] + dvec2((normals[0] + normals[1]) * (radius / miter.y)));
-        emit(p[2] + dvec2((normals[1] + normals[2]) * (radius / miter.z)));
-        EndPrimitive();
-        return;
+    bool isTriangle = !isLarge && min(miter.x, min(miter.y, miter.z)) > 1.0e-4;
+    dvec2 corners[4];
+    if (isTriangle) {
+        corners[0] = p[0] + dvec2((normals[2] + normals[0]) * (radius / miter.x));
+        corners[1] = p[1] + dvec2((normals[0] + normals[1]) * (radius / miter.y));
+        corners[2] = p[2] + dvec2((normals[1] + normals[2]) * (radius / miter.z));
+    } else if (isLarge) {
+        dvec2 size = dvec2(laminaDraw.size.xy);
+        dvec2 low = clamp(lowest - dvec2(radius), dvec2(0.0lf), size);
+        dvec2 high = clamp(highest + dvec2(radius), dvec2(0.0lf), size);
+        corners = dvec2[](low, dvec2(high.x, low.y), dvec2(low.x, high.y), high);
+    } else {
+        int first = longestEdge(p);
+        dvec2 a = p[first];
+        dvec2 b = p[(first + 1) % 3];
+        dvec2 c = p[(first + 2) % 3];
+        vec2 along = normalize(vec2(b - a));
+        vec2 across = vec2(-along.y, along.x);
+        float height = dot(vec2(c - a), across);
+        dvec2 low = dvec2(across * (min(height, 0.0) - 2.0 * radius));
+        dvec2 high = dvec2(across * (max(height, 0.0) + 2.0 * radius));
+        dvec2 extension = dvec2(along * (2.0 * radius));
+        corners = dvec2[](a - extension + low, b + extension + low, a - extension + high, b + extension + high);
     }
-    int first = longestEdge(p);
-    dvec2 a = p[first];
-    dvec2 b = p[(first + 1) % 3];
-    dvec2 c = p[(first + 2) % 3];
-    vec2 along = normalize(vec2(b - a));
-    vec2 across = vec2(-along.y, along.x);
-    float height = dot(vec2(c - a), across);
-    dvec2 low = dvec2(across * (min(height, 0.0) - 2.0 * radius));
-    dvec2 high = dvec2(across * (max(height, 0.0) + 2.0 * radius));
-    dvec2 extension = dvec2(along * (2.0 * radius));
-    emit(a - extension + low);
-    emit(b + extension + low);
-    emit(a - extension + high);
-    emit(b + extension + high);
+    emit(corners[0]);
+    emit(corners[1]);
+    emit(corners[2]);
+    if (!isTriangle)
+        emit(corners[3]);
     EndPrimitive();
 }
 #endif
@@ -264,6 +293,10 @@ void main() {
     if (any(greaterThan(low, dvec2(laminaDraw.size.xy) + margin)) || any(lessThan(high, dvec2(-margin))))
         return;
     bool ownsPoints = laminaSetUpTriangle(p, values, triangle);
-    if (ownsPoints || LAMINA_COVERAGE == LAMINA_COVERAGE_CONSERVATIVE)
-        emitCover(p, low, high);
+    if (!ownsPoints && LAMINA_COVERAGE != LAMINA_COVERAGE_CONSERVATIVE)
+        return;
+    bool isLarge = laminaIsLarge(low, high, dvec2(laminaDraw.size.xy));
+    if (isLarge && (gridIsBeyond(triangle.edges[0]) || gridIsBeyond(triangle.edges[1]) || gridIsBeyond(triangle.edges[2])))
+        return;
+    emitCover(p, low, high, isLarge);
 }

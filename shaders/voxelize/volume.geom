@@ -9,7 +9,8 @@
 //   2. in a perspective grid, cut off what lies at or behind the eye: one or two triangles are left;
 //   3. for each layer emit a polygon that covers the part of the triangle in the layer's slab after
 //      dilation, so that the rasterizer's sub-pixel snapping loses no column centre. The fragment
-//      stage decides exactly.
+//      stage decides exactly. Of a triangle that reaches far beyond the grid, a rectangle around its box in
+//      grid and slab.
 // Degenerate projections (edge-on triangles) cover no column centre and are dropped.
 // No array is indexed by a variable, and vertices are emitted at one place: software GL runs both
 // branches of everything and indexes lane by lane.
@@ -17,6 +18,7 @@
 // permute LAMINA_VOLUME_PERSPECTIVE = 0 1
 // permute LAMINA_VOLUME_SURFACE = 0 1
 #include <voxelize/volume_slices.glsl>
+#include <voxelize/large_triangle.glsl>
 
 #if LAMINA_VOLUME_PASS == LAMINA_VOLUME_PASS_LATER
 layout(triangles, invocations = LAMINA_VOLUME_INVOCATIONS_OF_LATER_PASSES) in;
@@ -70,6 +72,7 @@ struct Projected {
     int firstLayer;
     int lastLayer;     // below firstLayer: nothing to draw
     bool isSmall;      // not worth cutting
+    bool isLarge;      // reaches far beyond the grid
 };
 
 // Area in columns below which a triangle is not cut to a slab: set-up costs more than what it saves.
@@ -82,7 +85,7 @@ uint packDirection(vec3 direction) {
     return packSnorm2x16(d.z < 0.0 ? (1.0 - abs(d.yx)) * signs : d.xy);
 }
 
-void emit(Projected triangle, vec2 offset, int layer, uint material) {
+void emit(Projected triangle, dvec2 column, int layer, uint material) {
     laminaCorner0 = triangle.a;
     laminaCorner1 = triangle.b;
     laminaCorner2 = triangle.c;
@@ -94,7 +97,6 @@ void emit(Projected triangle, vec2 offset, int layer, uint material) {
     laminaColorsBa = triangle.colorsBa;
 #endif
     gl_Layer = layer;
-    dvec2 column = triangle.a + dvec2(offset);
     gl_Position = vec4(vec2(column * (2.0lf / dvec2(laminaDraw.size.xy)) - 1.0lf), 0.0, 1.0);
     EmitVertex();
 }
@@ -140,6 +142,45 @@ void cutBetween(float low, float high, vec3 least, vec3 middle, vec3 greatest, o
     points[4] = middle.z >= ends[0] && middle.z <= ends[1] ? middle.xy : points[2];
 }
 
+// Least and greatest value of a layer's slab, grown by the overlap.
+dvec2 slabOf(int layer) {
+    double overlap = double(laminaDraw.settings.y);
+    double front = laminaDepthAtSlice(max(double(layer) - overlap, 0.0lf));
+    double back = laminaDepthAtSlice(min(double(layer) + 1.0lf + overlap, double(laminaDraw.size.z)));
+#if LAMINA_VOLUME_PERSPECTIVE
+    return 1.0lf / dvec2(back, front);
+#else
+    return dvec2(front, back);
+#endif
+}
+
+// Low and high corner of the triangle's box in the grid, narrowed to where its values are those of the slab;
+// without area if that is nowhere.
+dvec4 boxInSlab(Projected triangle, int layer) {
+    const double kMargin = 1.0lf; // columns, for rounding
+    dvec2 size = dvec2(laminaDraw.size.xy);
+    dvec2 low = clamp(min(triangle.a, min(triangle.b, triangle.c)) - kMargin, dvec2(0.0lf), size);
+    dvec2 high = clamp(max(triangle.a, max(triangle.b, triangle.c)) + kMargin, dvec2(0.0lf), size);
+    dvec2 u = triangle.b - triangle.a;
+    dvec2 v = triangle.c - triangle.a;
+    dvec2 rises = triangle.values.yz - triangle.values.x;
+    double area = u.x * v.y - u.y * v.x;
+    dvec2 gradient = dvec2(rises.x * v.y - rises.y * u.y, rises.y * u.x - rises.x * v.x) * (1.0lf / area);
+    dvec2 inverse = 1.0lf / gradient;
+    dvec2 middle = 0.5lf * (low + high);
+    dvec2 ends = slabOf(layer);
+    ends += 1.0e-9lf * (abs(ends.x) + abs(ends.y)) * dvec2(-1.0lf, 1.0lf);
+    ends -= triangle.values.x + dot(gradient, middle - triangle.a);
+    // Along the other axis the values vary by as much.
+    dvec2 spread = abs(gradient.yx) * 0.5lf * (high - low).yx;
+    dvec2 first = (ends.x - spread) * inverse;
+    dvec2 last = (ends.y + spread) * inverse;
+    bvec2 isLevel = equal(gradient, dvec2(0.0lf));
+    low = mix(max(low, middle + min(first, last) - kMargin), low, isLevel);
+    high = mix(min(high, middle + max(first, last) + kMargin), high, isLevel);
+    return dvec4(low, max(low, high));
+}
+
 // The polygon of one layer: the whole triangle, its edges moved outwards, where it is small or lies in
 // one layer, else the smaller of two rectangles around the part in the slab. The same, around the whole,
 // where moved edges would make a spike.
@@ -158,7 +199,7 @@ void emitLayer(Projected triangle, int layer, uint material) {
 
     float radius = triangle.radius;
     vec2 corners[4];
-    bool isTriangle = isWhole && !isSpiky;
+    bool isTriangle = isWhole && !isSpiky && !triangle.isLarge;
     if (isTriangle) {
         corners[0] = (normalCa + normalAb) * (radius / miter.x);
         corners[1] = toB + (normalAb + normalBc) * (radius / miter.y);
@@ -168,14 +209,7 @@ void emitLayer(Projected triangle, int layer, uint material) {
         float high = 3.4e38;
         float slope = length(triangle.gradient);
         if (!isWhole) {
-            double overlap = double(laminaDraw.settings.y);
-            double front = laminaDepthAtSlice(max(double(layer) - overlap, 0.0lf));
-            double back = laminaDepthAtSlice(min(double(layer) + 1.0lf + overlap, double(laminaDraw.size.z)));
-#if LAMINA_VOLUME_PERSPECTIVE
-            dvec2 ends = 1.0lf / dvec2(back, front);
-#else
-            dvec2 ends = dvec2(front, back);
-#endif
+            dvec2 ends = slabOf(layer);
             // Dilation, and the rounding of depths and of slices near their boundaries.
             float allowance = float(1.0e-9lf * (abs(ends.x) + abs(ends.y))) + slope * radius;
             ends -= triangle.values.x;
@@ -201,11 +235,18 @@ void emitLayer(Projected triangle, int layer, uint material) {
         corners[2] = along * bounds.x + across * bounds.w;
         corners[3] = along * bounds.z + across * bounds.w;
     }
-    emit(triangle, corners[0], layer, material);
-    emit(triangle, corners[1], layer, material);
-    emit(triangle, corners[2], layer, material);
+    dvec2 place[4];
+    for (int i = 0; i < 4; ++i)
+        place[i] = triangle.a + dvec2(corners[i]);
+    if (triangle.isLarge) {
+        dvec4 box = boxInSlab(triangle, layer);
+        place = dvec2[4](box.xy, box.zy, box.xw, box.zw);
+    }
+    emit(triangle, place[0], layer, material);
+    emit(triangle, place[1], layer, material);
+    emit(triangle, place[2], layer, material);
     if (!isTriangle)
-        emit(triangle, corners[3], layer, material);
+        emit(triangle, place[3], layer, material);
     EndPrimitive();
 }
 
@@ -250,6 +291,7 @@ Projected project(Corner a, Corner b, Corner c) {
     dvec2 extent = max(abs(low), abs(high));
     triangle.radius = laminaDraw.settings.x + float(max(extent.x, extent.y)) * 4.8e-7;
     triangle.isSmall = abs(float(area)) < 2.0 * kSmallArea;
+    triangle.isLarge = laminaIsLarge(low, high, dvec2(laminaDraw.size.xy));
 
     double rounding = (laminaDraw.depthRange.w - laminaDraw.depthRange.x) * 1.0e-11lf;
     bool isOutside = farthest < laminaDraw.depthRange.x - rounding || nearest > laminaDraw.depthRange.w + rounding ||
