@@ -62,6 +62,24 @@ GLADapiproc loadThrough(void* user, const char* name) {
 
 } // namespace
 
+Result<void> checkContext(const DeviceState& device, std::string_view operation) {
+    if (device.gl.GetString(GL_VERSION) != nullptr)
+        return {};
+    return Error{ErrorCode::NoContext, std::string(operation) +
+                                           ": expected the device's GL context current on this "
+                                           "thread, found none; make it current first"};
+}
+
+Result<void> checkSameDevice(const DeviceState& device, const DeviceState* other,
+                             std::string_view operation, std::string_view what) {
+    if (other == &device)
+        return {};
+    return Error{ErrorCode::InvalidArgument,
+                 std::string(operation) + ": expected " + std::string(what) +
+                     " of the same device, found that of another; create it from the device that "
+                     "this was created from"};
+}
+
 DebugGroup::DebugGroup(DeviceState& device, std::string_view name)
     : mDevice(device) {
     // A host that has filled the group stack must not get an overflow error from us.

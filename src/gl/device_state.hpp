@@ -2,6 +2,7 @@
 
 #include "gl/objects.hpp"
 
+#include <lamina/core/result.hpp>
 #include <lamina/gl/device.hpp>
 
 #include <map>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamina::gl {
@@ -32,6 +34,17 @@ struct DeviceState {
             desc.message({severity, text});
     }
 };
+
+/// Errors: NoContext (no context is current on this thread). Another device's context passes: GL
+/// functions do not tell.
+[[nodiscard]] LAMINA_API Result<void> checkContext(const DeviceState& device,
+                                                   std::string_view operation);
+
+/// Errors: InvalidArgument (`other`, the device of `what`, is not this one).
+[[nodiscard]] LAMINA_API Result<void> checkSameDevice(const DeviceState& device,
+                                                      const DeviceState* other,
+                                                      std::string_view operation,
+                                                      std::string_view what);
 
 /// Puts the GL work of a scope under a KHR_debug group, for captures and debug output.
 class DebugGroup {

@@ -141,6 +141,8 @@ Result<void> allocate(DeviceState& device, std::uint64_t bytes, std::string_view
 Result<Buffer> createBuffer(const std::shared_ptr<DeviceState>& device, std::uint64_t bytes,
                             const void* data, GLbitfield storageFlags, std::string_view operation,
                             std::string_view label) {
+    if (auto current = checkContext(*device, operation); !current)
+        return current.error();
     if (auto fits = checkBudget(*device, bytes, operation); !fits)
         return fits.error();
     Buffer buffer = Buffer::create(device, label);
@@ -178,6 +180,8 @@ Result<Texture> createTexture(const std::shared_ptr<DeviceState>& device, GLenum
     for (std::uint32_t level = 0; level < shape.levels; ++level)
         bytes += std::uint64_t{bytesPerTexel} * std::max(size.x >> level, 1u) *
                  std::max(size.y >> level, 1u) * size.z;
+    if (auto current = checkContext(*device, operation); !current)
+        return current.error();
     if (auto fits = checkBudget(*device, bytes, operation); !fits)
         return fits.error();
     Texture texture = Texture::create(device, label, shape.target);

@@ -92,6 +92,8 @@ Result<GLuint> findOrBuildProgram(DeviceState& device, const ProgramDesc& desc) 
     if (const auto found = device.programs.find(key); found != device.programs.end())
         return found->second;
 
+    if (auto current = checkContext(device, desc.label); !current)
+        return current.error();
     const GladGLContext& gl = device.gl;
     std::vector<Shader> shaders;
     for (const ProgramStage& stage : desc.stages) {

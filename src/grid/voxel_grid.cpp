@@ -293,6 +293,9 @@ std::uint32_t VoxelGrid::rangeTexture() const {
 std::uint32_t VoxelGrid::uniformBuffer() const {
     return mImpl->uniforms.id();
 }
+const gl::DeviceState* VoxelGrid::deviceState() const {
+    return mImpl->device.get();
+}
 std::uint64_t VoxelGrid::gpuBytes() const {
     return mImpl->uniforms.bytes() + mImpl->words.texture.bytes() + mImpl->words.buffer.bytes() +
            (mImpl->ranges ? mImpl->ranges->bytes() : 0);

@@ -252,6 +252,13 @@ Result<AttributeStats> AttributeVoxelizer::voxelize(std::span<const GeometrySour
     const Material defaultMaterial;
     if (materials.empty())
         materials = {&defaultMaterial, 1};
+    constexpr const char* kOperation = "attribute voxelizer";
+    if (auto own = gl::checkSameDevice(*impl.device, voxels.deviceState(), kOperation, "a grid");
+        !own)
+        return own.error();
+    if (auto own = gl::checkSameDevice(*impl.device, result.device.get(), kOperation, "attributes");
+        !own)
+        return own.error();
     if (auto valid = checkGrid(voxels); !valid)
         return valid.error();
     if (auto valid = checkMaterials(materials); !valid)

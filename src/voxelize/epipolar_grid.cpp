@@ -183,6 +183,9 @@ std::uint32_t EpipolarGrid::texture() const {
 std::uint32_t EpipolarGrid::buffer() const {
     return mImpl->spaces.id();
 }
+const gl::DeviceState* EpipolarGrid::deviceState() const {
+    return mImpl->device.get();
+}
 std::uint64_t EpipolarGrid::gpuBytes() const {
     return mImpl->words.bytes() + mImpl->spaces.bytes();
 }

@@ -124,6 +124,9 @@ Result<EpipolarTransform> EpipolarTransform::around(const glm::dvec3& eye,
                        std::to_string(size.z));
     if (!isFinite(eye))
         return invalid("expected a finite eye position");
+    if (light.kind > LightKind::Directional)
+        return invalid("expected a point, spot or directional light, found LightKind value " +
+                       std::to_string(static_cast<int>(light.kind)));
     if (light.kind != LightKind::Point &&
         !(isFinite(light.direction) && glm::length(light.direction) > 0.0))
         return invalid("expected a finite light direction of some length, found none");

@@ -54,6 +54,10 @@ Result<void> checkAlpha(std::span<const EpipolarTransform> transforms) {
     return {};
 }
 
+Result<void> checkOwn(const gl::DeviceState& device, const EpipolarGrid& grid) {
+    return gl::checkSameDevice(device, grid.deviceState(), "epipolar voxelizer", "a grid");
+}
+
 } // namespace
 
 struct EpipolarVoxelizer::Impl {
@@ -124,6 +128,8 @@ EpipolarVoxelizer::Impl::fromGeometry(std::span<const GeometrySource> sources,
                                       std::span<const EpipolarTransform> transforms,
                                       EpipolarGrid& out) {
     const gl::DebugGroup group(*device, "lamina: voxelize (epipolar)");
+    if (auto own = checkOwn(*device, out); !own)
+        return own.error();
     if (auto sound = checkEpipolarLayout(transforms, out.layout()); !sound)
         return sound.error();
     if (auto sound = checkAlpha(transforms); !sound)
@@ -186,6 +192,8 @@ EpipolarVoxelizer::Impl::fromMaps(std::span<const LightDepthMap> hostMaps,
                      "epipolar voxelize: expected a depth map for each of the " +
                          std::to_string(transforms.size()) + " transforms, found " +
                          std::to_string(hostMaps.size())};
+    if (auto own = checkOwn(*device, out); !own)
+        return own.error();
     if (auto sound = checkEpipolarLayout(transforms, out.layout()); !sound)
         return sound.error();
     if (auto sound = checkAlpha(transforms); !sound)
@@ -281,6 +289,8 @@ Result<void> EpipolarVoxelizer::scan(EpipolarGrid& grid) {
         return Error{ErrorCode::InvalidArgument,
                      "epipolar scan: expected a grid with shadow volumes, found one without; "
                      "rectify or upload into it first"};
+    if (auto own = checkOwn(*mImpl->device, grid); !own)
+        return own;
     const auto program = mImpl->scanProgram();
     if (!program)
         return program.error();

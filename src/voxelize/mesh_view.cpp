@@ -43,9 +43,12 @@ Result<void> checkMeshView(const gl::DeviceState& device, const MeshView& view, 
         return Error{ErrorCode::InvalidArgument, prefix + text};
     };
     constexpr std::uint64_t kPositionBytes = 3 * sizeof(float);
-    if (!gl.IsBuffer(view.vertexBuffer))
+    if (!gl.IsBuffer(view.vertexBuffer)) {
+        if (auto current = gl::checkContext(device, what); !current)
+            return current;
         return invalid("expected vertexBuffer to name a GL buffer, found " +
                        std::to_string(view.vertexBuffer));
+    }
     if (view.vertexStrideBytes > device.limits.maxVertexAttribStride)
         return Error{ErrorCode::DeviceLimit,
                      prefix + "vertex stride " + std::to_string(view.vertexStrideBytes) +

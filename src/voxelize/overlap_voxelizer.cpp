@@ -130,6 +130,8 @@ void OverlapVoxelizer::visitParts(std::span<const OverlapSource> sources,
 Result<VoxelizeStats> OverlapVoxelizer::voxelize(std::span<const GeometrySource> sources,
                                                  const GridTransform& transform, VoxelGrid& out) {
     const gl::DebugGroup group(*mDevice, "lamina: voxelize (overlap)");
+    if (auto own = gl::checkSameDevice(*mDevice, out.deviceState(), "voxelize", "a grid"); !own)
+        return own.error();
     auto parts = gridParts(*mDevice, transform);
     if (!parts)
         return parts.error();

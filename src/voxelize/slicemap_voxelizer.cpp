@@ -145,6 +145,9 @@ Result<void> SlicemapVoxelizer::checkOptions(const VoxelizeOptions& options,
             ErrorCode::Unsupported,
             "voxelize: expected a coverage of surfaces to split, found solid; use coverage "
             "conservative or filled, or a voxelize() call for each closed mesh"};
+    if (options.split > Split::ColorClass)
+        return invalid("expected a value of Split, found " +
+                       std::to_string(static_cast<int>(options.split)));
     const std::size_t least = options.split == Split::Facing ? 2 : 1;
     const std::size_t most = options.split == Split::ColorClass ? kMostTargets : least;
     if (gridCount < least || gridCount > most)
@@ -310,6 +313,10 @@ Result<VoxelizeStats> SlicemapVoxelizer::voxelizeWith(std::span<const GeometrySo
                          " x " + std::to_string(able.maxSlices) + "; use a smaller grid"};
     if (auto valid = checkOptions(options, grids.size()); !valid)
         return valid.error();
+    for (const VoxelGrid& grid : grids)
+        if (auto own = gl::checkSameDevice(*mDevice, grid.deviceState(), "voxelize", "a grid");
+            !own)
+            return own.error();
     const gl::DebugGroup group(*mDevice, "lamina: voxelize (" + std::string(name(mBackend)) + ")");
     const VoxelStore store = options.split == Split::None ? mStore : VoxelStore::Texture;
     auto planned =

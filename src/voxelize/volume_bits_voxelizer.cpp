@@ -86,6 +86,8 @@ Result<VoxelizeStats> VolumeBitsVoxelizer::voxelize(std::span<const GeometrySour
                                                     const GridTransform& transform,
                                                     VoxelGrid& out) {
     const gl::DebugGroup group(*mDevice, "lamina: voxelize (volume bits)");
+    if (auto own = gl::checkSameDevice(*mDevice, out.deviceState(), "voxelize", "a grid"); !own)
+        return own.error();
     const auto made = mVoxelizer.voxelize(plainSources(sources), {}, transform, mVolume);
     if (!made)
         return made.error();

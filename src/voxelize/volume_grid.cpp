@@ -272,6 +272,9 @@ std::uint32_t VolumeGrid::texture(VolumePayload payload) const {
 std::uint32_t VolumeGrid::uniformBuffer() const {
     return mImpl->uniforms.id();
 }
+const gl::DeviceState* VolumeGrid::deviceState() const {
+    return mImpl->device.get();
+}
 std::uint64_t VolumeGrid::gpuBytes() const {
     std::uint64_t bytes = mImpl->uniforms.bytes();
     for (const gl::Texture& texture : mImpl->textures)

@@ -358,6 +358,10 @@ Result<VolumeStats> VolumeVoxelizer::voxelize(std::span<const GeometrySource> so
         materials = {&defaultMaterial, 1};
     if (auto valid = checkMaterials(materials); !valid)
         return valid.error();
+    if (auto own =
+            gl::checkSameDevice(*impl.device, out.deviceState(), "volume voxelizer", "a volume");
+        !own)
+        return own.error();
     if (auto fits = impl.checkLimits(transform); !fits)
         return fits.error();
     const gl::DebugGroup group(*impl.device, "lamina: voxelize (volume)");

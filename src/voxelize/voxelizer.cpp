@@ -103,6 +103,24 @@ Error unsupported(const std::string& expected, const std::string& found) {
     return {ErrorCode::Unsupported, "voxelizer: expected " + expected + ", found " + found};
 }
 
+/// Are all values those of their enumerations?
+Result<void> checkValues(const VoxelizerDesc& desc) {
+    const auto check = [](const char* what, auto value, auto last) -> Result<void> {
+        if (value <= last)
+            return {};
+        return Error{ErrorCode::InvalidArgument, std::string("voxelizer: expected a value of ") +
+                                                     what + ", found " +
+                                                     std::to_string(static_cast<int>(value))};
+    };
+    if (auto valid = check("Backend", desc.backend, Backend::MrtSlicemap); !valid)
+        return valid;
+    if (auto valid = check("Coverage", desc.coverage, Coverage::Solid); !valid)
+        return valid;
+    if (auto valid = check("SolidRule", desc.solidRule, SolidRule::FloodFill); !valid)
+        return valid;
+    return check("VoxelStore", desc.store.value_or(VoxelStore::Texture), VoxelStore::Buffer);
+}
+
 /// Does the backend serve all that is asked?
 Result<void> checkServed(Backend backend, const VoxelizerDesc& desc) {
     const std::string asked(name(backend));
@@ -186,10 +204,12 @@ Result<BitGrid> Voxelizer::downloadDoubtfulVoxels() const {
 
 Result<std::unique_ptr<Voxelizer>> Voxelizer::create(const Device& device,
                                                      const VoxelizerDesc& desc) {
+    if (auto valid = checkValues(desc); !valid)
+        return valid.error();
     const bool isAutomatic = desc.backend == Backend::Automatic;
     // Both serve: which one, the grid of each call decides.
-    if (isAutomatic && !desc.localRanges && !desc.store && serves(Backend::MrtSlicemap, desc) &&
-        serves(Backend::Overlap, desc))
+    if (isAutomatic && !desc.localRanges && desc.store != VoxelStore::Texture &&
+        serves(Backend::MrtSlicemap, desc) && serves(Backend::Overlap, desc))
         return createAutomaticVoxelizer(device, desc);
     VoxelizerDesc chosen = desc;
     if (isAutomatic)

@@ -144,6 +144,9 @@ TEST(EpipolarTransform, RefusesWhatHasNoEpipolarSpace) {
     EXPECT_THAT(text(EpipolarTransform::fit(
                     eye, {.kind = LightKind::Spot, .position = {1, 0, 0}, .coneAngle = 4.0}, size)),
                 HasSubstr("cone angle in (0, pi), found 4"));
+    EXPECT_THAT(text(EpipolarTransform::fit(
+                    eye, {.kind = static_cast<LightKind>(9), .position = {1, 0, 0}}, size)),
+                HasSubstr("found LightKind value 9"));
     EXPECT_THAT(text(EpipolarTransform::fit(eye, {.position = {1, NAN, 0}}, size)),
                 HasSubstr("finite light position"));
     EXPECT_THAT(text(EpipolarTransform::fit(eye, {.position = {1, 0, 0}}, {8, 0, 8})),

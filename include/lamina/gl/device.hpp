@@ -13,6 +13,8 @@
 
 namespace lamina {
 
+/// Internals. A host with a global object `gl` of its own names what it uses (`using
+/// lamina::Device;`) rather than all of lamina: the two names would be ambiguous.
 namespace gl {
 struct DeviceState;
 }

@@ -99,6 +99,8 @@ public:
     [[nodiscard]] std::uint32_t uniformBuffer() const;
     /// Bytes of GL memory held, a shared near/far map counted in full.
     [[nodiscard]] std::uint64_t gpuBytes() const;
+    /// Building block for Lamina's own modules; not part of the stable API.
+    [[nodiscard]] const gl::DeviceState* deviceState() const;
 
 private:
     struct Impl;

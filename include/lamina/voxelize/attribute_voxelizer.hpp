@@ -60,16 +60,17 @@ public:
     /// the end use the last one. Waits for the GPU only if `out` has no maxVoxels, or for a
     /// DrawSource without maxTriangles.
     /// Errors: InvalidArgument (a grid of no size, a MeshView that does not fit its buffers, a
-    /// material id or value out of range), Unsupported (a perspective grid, or slices that are not
-    /// linear: use VolumeVoxelizer; local ranges: see BitGrid::toUniform()), DeviceLimit,
-    /// OutOfMemory, ShaderError (a DrawSource's vertex stage); the GL state is unchanged, `out` is
-    /// unchanged or holds nothing. GL: `out` may be sampled at once, no barrier needed; writes of
-    /// the host to its vertex buffers by shaders need GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
-    /// GL_ELEMENT_ARRAY_BARRIER_BIT before the call. Cost: a pass over the grid's words, one over
-    /// the geometry for each 512 slices and each batch of voxels whose sums (64 bytes each) one
-    /// storage buffer binding holds. On software GL 8 to 13 times Coverage::Conservative, a
-    /// third each for the sums and for what is summed, by triangle and voxel; surfaces of one
-    /// colour (no vertex colours, materials of one) take four sums less, an eighth of the time.
+    /// material id or value out of range, a grid or attributes of another device), Unsupported (a
+    /// perspective grid, or slices that are not linear: use VolumeVoxelizer; local ranges: see
+    /// BitGrid::toUniform()), DeviceLimit, OutOfMemory, ShaderError (a DrawSource's vertex stage);
+    /// the GL state is unchanged, `out` is unchanged or holds nothing. GL: `out` may be sampled at
+    /// once, no barrier needed; writes of the host to its vertex buffers by shaders need
+    /// GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT before the call. Cost: a
+    /// pass over the grid's words, one over the geometry for each 512 slices and each batch of
+    /// voxels whose sums (64 bytes each) one storage buffer binding holds. On software GL 8 to 13 times
+    /// Coverage::Conservative, a third each for the sums and for what is summed, by triangle and
+    /// voxel; surfaces of one colour (no vertex colours, materials of one) take four sums less, an
+    /// eighth of the time.
     [[nodiscard]] Result<AttributeStats> voxelize(std::span<const GeometrySource> sources,
                                                   std::span<const Material> materials,
                                                   const VoxelGrid& voxels, VoxelAttributes& out);

@@ -62,6 +62,8 @@ public:
     [[nodiscard]] std::uint32_t buffer() const;
     /// Bytes of GL memory held.
     [[nodiscard]] std::uint64_t gpuBytes() const;
+    /// Building block for Lamina's own modules; not part of the stable API.
+    [[nodiscard]] const gl::DeviceState* deviceState() const;
 
 private:
     struct Impl;

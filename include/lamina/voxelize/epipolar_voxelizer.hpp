@@ -53,8 +53,9 @@ public:
     /// Shadow volumes of `sources` for the light and eye of each transform. Draws the depth maps
     /// that each shadow volume needs, fitted to its ranges, at most 256 MiB of them at a time.
     /// Errors: InvalidArgument (transforms of different sizes, a MeshView that does not fit its
-    /// buffers, a DrawSource without a draw), DeviceLimit (over 2048 alpha voxels), OutOfMemory,
-    /// ShaderError. Cost: a pass of the geometry per depth map, then the kernel.
+    /// buffers, a DrawSource without a draw, a grid of another device), DeviceLimit (over 2048
+    /// alpha voxels), OutOfMemory, ShaderError. Cost: a pass of the geometry per depth map, then
+    /// the kernel.
     [[nodiscard]] Result<EpipolarStats> voxelize(std::span<const GeometrySource> sources,
                                                  std::span<const EpipolarTransform> transforms,
                                                  EpipolarGrid& out);

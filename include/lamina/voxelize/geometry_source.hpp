@@ -30,19 +30,25 @@ enum class VertexColorFormat : std::uint8_t {
 };
 
 /// Triangles in the host's own GL buffers (GL_TRIANGLES). Borrowed for the call; nothing is copied.
+/// Indices are not checked: what a triangle with one of vertexCount or more sets is undefined, and
+/// differs between backends.
 struct MeshView {
-    std::uint32_t vertexBuffer = 0;        ///< GL buffer name.
-    std::uint64_t positionOffsetBytes = 0; ///< Of vertex 0's position (three floats) in the buffer.
-    std::uint32_t vertexStrideBytes = 12;  ///< From one vertex to the next.
-    std::uint32_t vertexCount = 0;         ///< Vertices in the buffer; not indexed: what is drawn.
+    std::uint32_t vertexBuffer = 0; ///< GL buffer name.
+    /// Of vertex 0's position (three floats) in the buffer; a multiple of 4.
+    std::uint64_t positionOffsetBytes = 0;
+    /// From one vertex to the next; a multiple of 4, above 0.
+    std::uint32_t vertexStrideBytes = 12;
+    std::uint32_t vertexCount = 0; ///< Vertices in the buffer; not indexed: what is drawn.
 
     std::uint32_t indexBuffer = 0; ///< GL buffer name; unused for IndexType::None.
     IndexType indexType = IndexType::None;
     std::uint64_t indexOffsetBytes = 0; ///< Of the first index; a multiple of the index size.
     std::uint32_t indexCount = 0;       ///< Three a triangle.
 
-    glm::mat4 model{1.0f};        ///< Affine, model to world.
-    std::uint32_t materialId = 0; ///< Index into the material table.
+    glm::mat4 model{1.0f}; ///< Affine, model to world.
+    /// Index into the material table. Past its end: an error of VolumeVoxelizer and
+    /// AttributeVoxelizer, the last entry for VoxelizeOptions::materials.
+    std::uint32_t materialId = 0;
 
     VertexStream normals{}; ///< Three floats, model space, any length; none: the faces' own.
     VertexStream colors{};  ///< None: white.
@@ -65,9 +71,12 @@ struct DrawSource {
     std::string vertexShader;
     /// Binds the host's vertex array and resources and issues draws of GL_TRIANGLES,
     /// GL_TRIANGLE_STRIP or GL_TRIANGLE_FAN. It runs with Lamina's program and framebuffer bound
-    /// and must leave both; vertex array, uniform buffers 0 to 2 and raster state are put back
-    /// after voxelize(); what else it binds (textures, storage buffers, other uniform buffers)
-    /// stays as it leaves it.
+    /// and must leave both, under state for voxelization (no face culling, clip distances, scissor
+    /// test or rasterizer discard; filled polygons; all of the viewport), of which it changes
+    /// nothing but primitive restart: that is as the host set it before the call, so indices equal
+    /// to its restart index are no vertices. Vertex array, uniform buffers 0 to 2 and raster state
+    /// are put back after voxelize(); what else it binds (textures, storage buffers, other uniform
+    /// buffers) stays as it leaves it.
     std::function<void(const DrawContext&)> draw;
     /// At least the number of triangles that the callback draws; 0: unknown. A compute backend
     /// keeps them in a buffer of 36 bytes each: what exceeds a number given here is not voxelized,

@@ -39,10 +39,11 @@ struct VolumeStats {
 /// A triangle hits voxel (i,j,k) if its projection owns the centre of column (i,j) (points on left
 /// edges and horizontal top edges count) and its depth there lies in slice k grown by the slab
 /// overlap. Coverage::Sampled is the same rule: without overlap the voxels with hits are its
-/// voxels. Coverage and depth are decided in double precision. A hit's normal is interpolated from
-/// the vertices (the face's own without vertex normals) and has unit length; its colour is the
-/// vertices' times the material's. Triangles with non-finite or zero-area projections hit nothing.
-/// A triangle's material is its first vertex's. Move-only; see Device for threads and GL state.
+/// voxels. Coverage and depth are decided in double precision, of triangles up to 1e7 times the
+/// grid's size too. A hit's normal is interpolated from the vertices (the face's own without vertex
+/// normals) and has unit length; its colour is the vertices' times the material's. Triangles with
+/// non-finite or zero-area projections hit nothing. A triangle's material is its first vertex's.
+/// Move-only; see Device for threads and GL state.
 class LAMINA_API VolumeVoxelizer {
 public:
     /// Materials of one table.
@@ -61,12 +62,12 @@ public:
     /// materials: by material id, at most kMaxMaterials; none: the default Material alone. Ids that
     /// a DrawSource's vertices give past the end use the last one.
     /// Errors: InvalidArgument (a MeshView that does not fit its buffers, a material id or value
-    /// out of range), DeviceLimit, OutOfMemory, ShaderError (a DrawSource's vertex stage); the
-    /// volume's content and the GL state are then unchanged. GL: `out` may be sampled at once, no
-    /// barrier needed; writes of the host to its vertex buffers by shaders need
-    /// GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT before the call.
-    /// Cost: one pass over the geometry, which draws seven layers of each triangle, and further
-    /// ones for what spans more; a clear of the volume.
+    /// out of range, a volume of another device), DeviceLimit, OutOfMemory, ShaderError (a
+    /// DrawSource's vertex stage); the volume's content and the GL state are then unchanged. GL:
+    /// `out` may be sampled at once, no barrier needed; writes of the host to its vertex buffers by
+    /// shaders need GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT before the
+    /// call. Cost: one pass over the geometry, which draws seven layers of each triangle, and
+    /// further ones for what spans more; a clear of the volume.
     [[nodiscard]] Result<VolumeStats> voxelize(std::span<const GeometrySource> sources,
                                                std::span<const Material> materials,
                                                const GridTransform& transform, VolumeGrid& out);

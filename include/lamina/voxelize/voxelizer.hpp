@@ -72,8 +72,9 @@ enum class SolidRule : std::uint8_t {
 /// How voxels are made.
 enum class Backend : std::uint8_t {
     /// Sampled, Filled, and whatever asks for local ranges: MrtSlicemap; Separating6: Overlap;
-    /// Conservative, Solid: Overlap in the grids that it takes, else MrtSlicemap, call by call.
-    /// Solid by another rule than Parity: Overlap.
+    /// Conservative, Solid: Overlap in the grids that it takes, else MrtSlicemap, call by call, and
+    /// MrtSlicemap for all grids if they shall have the texture store. Solid by another rule than
+    /// Parity: Overlap.
     Automatic,
     /// Bits by logic op, one pass of the geometry per 128 slices ([ED06] 2.1-2.3). Any grid; all
     /// coverages but Separating6. Solid by XOR (Eisemann and Decoret 2008), SolidRule::Parity
@@ -83,7 +84,9 @@ enum class Backend : std::uint8_t {
     /// Conservative, Separating6 and Solid.
     Overlap,
     /// The hit counts of a VolumeVoxelizer, a byte a voxel, packed to bits: all slices in one pass
-    /// of the geometry ([CLN11] 2). Any grid; Sampled.
+    /// of the geometry ([CLN11] 2), but for triangles that span more than seven: they are drawn
+    /// once more for each further 224 slices of the grid (of a DrawSource, all are). Any grid;
+    /// Sampled.
     Volume,
     /// Slicemap whose columns divide near/far ranges of their own, found by one more pass of the
     /// geometry ([ED06] 2.3). Not for Solid.
@@ -176,12 +179,16 @@ struct VoxelizeStats {
 /// Turns triangles into voxels, on the GPU, every frame.
 ///
 /// Coverage is decided by exact edge and plane equations in double precision, not by the
-/// rasterizer's snapped coordinates: all devices give the same voxels. Triangles with non-finite or
-/// zero-area projections set none, except that Conservative and Separating6 see the latter. See
-/// Device for threads, lifetime and GL state.
+/// rasterizer's snapped coordinates: all devices give the same voxels, of triangles up to 1e7 times
+/// the grid's size too. Backends may differ by the few voxels that a triangle all but touches:
+/// Overlap's voxels are larger by 4e-5 of their edge on every side (up to 1e-4 after rounding), so
+/// that a face this near to a boundary sets both layers, a slicemap's Conservative columns by 1e-5.
+/// Triangles with non-finite or zero-area projections set none, except that Conservative and
+/// Separating6 see the latter. See Device for threads, lifetime and GL state.
 class LAMINA_API Voxelizer {
 public:
-    /// Errors: Unsupported (no backend serves `desc` here), ShaderError.
+    /// Errors: InvalidArgument (a value outside its enumeration), Unsupported (no backend serves
+    /// `desc` here), NoContext, ShaderError.
     /// Cost: compiles the backend's programs (milliseconds).
     [[nodiscard]] static Result<std::unique_ptr<Voxelizer>> create(const Device& device,
                                                                    const VoxelizerDesc& desc = {});
@@ -201,11 +208,11 @@ public:
     /// Voxelizes all `sources` into `out`, which takes the place of `transform`; what it held is
     /// replaced. An empty list of sources gives an empty grid. Does not wait for the GPU.
     /// Errors: InvalidArgument (a MeshView that does not fit its buffers, naming source, expected
-    /// and found), DeviceLimit, OutOfMemory, ShaderError (a DrawSource's vertex stage); `out` and
-    /// the GL state are then unchanged. GL: `out` may be sampled at once, no barrier needed; writes
-    /// of the host to its vertex buffers by shaders need GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
-    /// GL_ELEMENT_ARRAY_BARRIER_BIT before the call. Cost: one pass of the geometry per
-    /// capabilities().slicesPerPass slices; a clear of the grid.
+    /// and found; a grid of another device), NoContext, DeviceLimit, OutOfMemory, ShaderError (a
+    /// DrawSource's vertex stage); `out` and the GL state are then unchanged. GL: `out` may be
+    /// sampled at once, no barrier needed; writes of the host to its vertex buffers by shaders need
+    /// GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT before the call. Cost: one
+    /// pass of the geometry per capabilities().slicesPerPass slices; a clear of the grid.
     /// SolidRule::Voted: closed, consistently oriented meshes without overlaps take one pass
     /// and 1.2 to 1.5 times the work of Parity; with overlaps two passes and 3 to 6 times the work;
     /// others 15 to 45 times, more the larger the grid: four passes and, where rays disagree, four
