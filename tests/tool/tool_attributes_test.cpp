@@ -156,6 +156,13 @@ TEST_F(ToolAttributes, FormatsAndMeshesWithoutAreToldOf) {
     EXPECT_THAT(result.err, HasSubstr("the mesh has no colours: voxels are white"));
     result = runTool({painted, "-r", "16", "-o", folder / "c.binvox"});
     EXPECT_THAT(result.err, IsEmpty());
+    result = runTool({painted, "-r", "16", "-o", folder / "c.vox"});
+    EXPECT_THAT(result.err, IsEmpty());
+    result = runTool({painted, "--bounds", "-2", "-2", "-2", "2", "2", "2", "--grid", "16", "16",
+                      "8", "-o", folder / "d.vox"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("d.vox: .vox files show cubes"),
+                                  HasSubstr("0.25, 0.25, 0.5: the shape is distorted")));
 }
 
 TEST_F(ToolAttributes, BadRequestsAreRefusedBeforeWork) {

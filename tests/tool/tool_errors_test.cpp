@@ -184,6 +184,19 @@ TEST_F(ToolErrors, MeshFiles) {
     expectBadMesh("nan.ply", readBytes(folder / "nan.ply"), {"nan.ply", "finite"});
 }
 
+TEST_F(ToolErrors, AdviceIsInTheWordsOfTheCommandLine) {
+    const auto expect = [&](const std::vector<std::string>& options, const std::string& advice) {
+        std::vector<std::string> arguments{mesh, "-r", "8", "-o", out};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        expectFailure(arguments, kUnsupported, {advice});
+        EXPECT_THAT(runTool(arguments).err, testing::Not(HasSubstr("::")));
+    };
+    expect({"--coverage", "solid", "--solid-rule", "voted", "--backend", "mrt_slicemap"},
+           "use --backend auto or overlap, or --solid-rule parity");
+    expect({"--coverage", "filled", "--backend", "overlap"}, "use --backend auto or mrt_slicemap");
+    expect({"--coverage", "solid", "--backend", "local_slicemap"}, "--backend auto (overlap)");
+}
+
 TEST_F(ToolErrors, MeshInOnePoint) {
     expectBadMesh("point.obj", "v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n", {"(1, 2, 3)", "extent"});
 }

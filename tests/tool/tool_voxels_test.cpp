@@ -239,6 +239,24 @@ TEST(ToolVoxels, SolidTakesTheRuleThatFitsTheMesh) {
     EXPECT_EQ(flood.first["enclosed"], 0);
     EXPECT_NE(flood.second.find("encloses nothing"), std::string::npos) << flood.second;
 
+    // A part leaks, another does not.
+    writePly(folder / "leak.ply",
+             reference::merged(open, reference::makeIcosphere({3, 0, 0}, 0.5f, 3)));
+    const auto leak = solid("leak.ply", {"--solid-rule", "flood"});
+    EXPECT_GT(leak.first["enclosed"].get<int>(), 0);
+    EXPECT_NE(leak.second.find("the mesh is open: " + leak.first["enclosed"].dump() + " of the " +
+                               leak.first["set"].dump() + " voxels are enclosed"),
+              std::string::npos)
+        << leak.second;
+    EXPECT_EQ(solid("ball.ply", {"--solid-rule", "flood"}).second.find("warning"),
+              std::string::npos);
+
+    // What a slicemap's user is told to use is served.
+    const auto slicemap = solid("open.ply", {"--backend", "mrt_slicemap"});
+    EXPECT_EQ(slicemap.first["solid_rule"], "parity");
+    EXPECT_NE(slicemap.second.find("use --backend auto --solid-rule voted"), std::string::npos)
+        << slicemap.second;
+
     // Overlapping parts: their union.
     const auto balls = solid("balls.ply", {}).first;
     EXPECT_EQ(balls["solid_rule"], "voted");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "option_words.hpp"
+
 #include <lamina/core/result.hpp>
 
 #include <stdexcept>
@@ -39,7 +41,7 @@ private:
         return {ExitCode::BadMesh, error.text};
     case ErrorCode::Unsupported:
     case ErrorCode::DeviceLimit:
-        return {ExitCode::Unsupported, error.text};
+        return {ExitCode::Unsupported, inOptionWords(error.text)};
     default:
         return {ExitCode::Failed, error.text};
     }

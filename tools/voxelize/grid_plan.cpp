@@ -105,6 +105,11 @@ double enclosedVolume(const TriangleMesh& mesh) {
 
 } // namespace
 
+bool isCubic(const glm::dvec3& voxelSize) {
+    const auto [shortest, longest] = std::minmax({voxelSize.x, voxelSize.y, voxelSize.z});
+    return longest - shortest <= 1e-6 * longest;
+}
+
 double GridPlan::bytes() const {
     const glm::uvec3 axes = boxGridAxes(axis);
     return std::ceil(counts[axes.z] / 128.0) * 16.0 * counts[axes.x] * counts[axes.y];

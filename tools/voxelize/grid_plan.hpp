@@ -36,6 +36,9 @@ struct GridPlan {
     [[nodiscard]] double bytes() const;
 };
 
+/// Do the edges agree, but for the rounding of boxes made as low corner + count * edge?
+[[nodiscard]] bool isCubic(const glm::dvec3& voxelSize);
+
 /// The grid for `mesh`, which has triangles.
 ///
 /// Resolution and voxel size give cubes from the low corner of the mesh's box, counts rounded up. A

@@ -48,7 +48,8 @@ Solid rules, what is inside:
   voted         a majority of 14 rays: for meshes with holes, overlaps, doubled or flipped triangles;
                 a warning tells how many voxels were close
   flood         all that the outside cannot reach: up to a voxel thicker; needs no orientation, but
-                no opening may be wider than a voxel
+                no opening may be wider than a voxel: a warning tells how much an open mesh
+                encloses
   auto takes parity for a watertight mesh of one part and voted for others.
 
 Grid:

@@ -56,8 +56,7 @@ void checkCubes(const fs::path& file, const GridRequest& grid) {
     if (!grid.bounds)
         return;
     const glm::dvec3 edge = grid.bounds->size() / glm::dvec3(*grid.counts);
-    const auto [shortest, longest] = std::minmax({edge.x, edge.y, edge.z});
-    if (longest - shortest > 1e-6 * longest)
+    if (!isCubic(edge))
         throw Failure(
             ExitCode::Unsupported,
             fmt::format("-o {}: .binvox holds cubic voxels only, --bounds and --grid give "

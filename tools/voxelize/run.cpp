@@ -162,26 +162,48 @@ void warnOfAttributes(const Request& request, const RunRecord& record) {
         fmt::print(stderr, "lamina-voxelize: warning: the mesh has no colours: voxels are white\n");
 }
 
+void warn(const std::string& text) {
+    fmt::print(stderr, "lamina-voxelize: warning: {}\n", text);
+}
+
+void warnOfShape(const Request& request, const GridPlan& grid) {
+    const glm::dvec3& edge = grid.voxelSize;
+    for (const fs::path& output : request.outputs)
+        if (*gridFormat(output) == GridFormat::Vox && !isCubic(edge))
+            warn(fmt::format(
+                "-o {}: .vox files show cubes, --bounds and --grid give edges {:g}, "
+                "{:g}, {:g}: the shape is distorted there; .vti and .vdb hold the edges",
+                output.string(), edge.x, edge.y, edge.z));
+}
+
 /// What keeps a solid from being sure.
-void warnAboutSolid(const SolidFacts& solid, const GridPlan& grid) {
-    const auto warn = [](const std::string& text) {
-        fmt::print(stderr, "lamina-voxelize: warning: {}\n", text);
-    };
+void warnAboutSolid(const Request& request, const RunRecord& record) {
+    const SolidFacts& solid = *record.voxels->solid;
     const SolidReport& report = solid.report;
+    const bool canVote =
+        request.backend == Backend::Automatic || request.backend == Backend::Overlap;
+    const std::string advice =
+        canVote ? "use --solid-rule voted" : "use --backend auto --solid-rule voted";
     if (report.oddColumns > 0)
         warn(fmt::format("the mesh is not closed: {} of {} columns are crossed an odd number of "
-                         "times and are filled up to their last crossing; use --solid-rule voted",
-                         report.oddColumns, columnCount(grid)));
+                         "times and are filled up to their last crossing; {}",
+                         report.oddColumns, columnCount(*record.grid), advice));
     if (solid.rule == SolidRule::Voted && report.doubtfulVoxels > 0)
         warn(fmt::format("{} voxels are doubtful: 5 or more of their 14 rays disagree with the "
                          "others, at holes and where triangles are wrong",
                          report.doubtfulVoxels));
+    const bool isOpen = record.mesh.report && record.mesh.report->openEdges > 0;
     if (solid.rule == SolidRule::FloodFill && report.enclosedVoxels == 0)
-        warn("the surface encloses nothing: it has openings wider than a voxel; use --solid-rule "
-             "voted");
+        warn("the surface encloses nothing: it has openings wider than a voxel; " + advice);
+    else if (solid.rule == SolidRule::FloodFill && isOpen)
+        warn(fmt::format("the mesh is open: {} of the {} voxels are enclosed, the others touch the "
+                         "surface; through openings wider than a voxel the inside is lost; {} to "
+                         "compare",
+                         report.enclosedVoxels, record.voxels->set, advice));
     if (!report.isFloodComplete)
         warn("the outside winds through more turns than were followed; what lies behind them is "
-             "filled; use --solid-rule voted");
+             "filled; " +
+             advice);
 }
 
 void tell(const Request& request, const RunRecord& record) {
@@ -192,8 +214,10 @@ void tell(const Request& request, const RunRecord& record) {
             stderr,
             "lamina-voxelize: warning: no voxel is set; the mesh lies outside the grid, or its "
             "triangles are edge-on to the axis (filled, sampled) or enclose nothing (solid)\n");
+    if (!request.quiet)
+        warnOfShape(request, *record.grid);
     if (!request.quiet && record.voxels && record.voxels->solid)
-        warnAboutSolid(*record.voxels->solid, *record.grid);
+        warnAboutSolid(request, record);
     if (request.verbose || (!request.quiet && isatty(STDERR_FILENO) == 1))
         fmt::print(stderr, "{}", summary(record));
 }
@@ -205,8 +229,10 @@ void run(const Request& request) {
     RunRecord record;
     checkOutputs(request);
     TriangleMesh mesh = loadMesh(request.mesh, clock, record);
-    const bool needsRule = request.coverage == Coverage::Solid && !request.solidRule;
-    if (request.infoOnly || request.stats || request.compare || needsRule)
+    // To choose the rule, or to say what a flood loses.
+    const bool matters = request.coverage == Coverage::Solid &&
+                         request.solidRule.value_or(SolidRule::FloodFill) == SolidRule::FloodFill;
+    if (request.infoOnly || request.stats || request.compare || matters)
         record.mesh.report =
             clock.run("inspect", "inspecting the mesh", [&] { return require(inspect(mesh)); });
     record.grid = planGrid(request.grid, mesh);
