@@ -112,7 +112,9 @@ bool run() {
     const glm::mat4 model(1.0f);
 
     // README begin
-    using namespace lamina;
+    using lamina::Axis, lamina::Box3, lamina::Coverage, lamina::Device;
+    using lamina::GeometrySource, lamina::GridTransform, lamina::IndexType;
+    using lamina::MeshView, lamina::VoxelGrid, lamina::Voxelizer;
     // Once. The engine's context is current, `load` is its getProcAddress.
     Device device = check(Device::fromCurrentContext(load));
     auto voxelizer = check(Voxelizer::create(device, {.coverage = Coverage::Filled}));
