@@ -67,10 +67,10 @@ public:
     /// once, no barrier needed; writes of the host to its vertex buffers by shaders need
     /// GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT before the call. Cost: a
     /// pass over the grid's words, one over the geometry for each 512 slices and each batch of
-    /// voxels whose sums (64 bytes each) one storage buffer binding holds. On software GL 8 to 13 times
-    /// Coverage::Conservative, a third each for the sums and for what is summed, by triangle and
-    /// voxel; surfaces of one colour (no vertex colours, materials of one) take four sums less, an
-    /// eighth of the time.
+    /// voxels whose sums (64 bytes each) one storage buffer binding holds. On software GL 8 to 13
+    /// times Coverage::Conservative, a third each for the sums and for what is summed, by triangle
+    /// and voxel; surfaces of one colour (no vertex colours, materials of one) take four sums less,
+    /// an eighth of the time.
     [[nodiscard]] Result<AttributeStats> voxelize(std::span<const GeometrySource> sources,
                                                   std::span<const Material> materials,
                                                   const VoxelGrid& voxels, VoxelAttributes& out);
