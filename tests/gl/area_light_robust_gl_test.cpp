@@ -3,6 +3,7 @@
 
 #include "gl/support/fog_test.hpp"
 
+#include <reference/fog_errors.hpp>
 #include <reference/shapes.hpp>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -12,8 +13,8 @@
 namespace lamina {
 namespace {
 
+using reference::relativeRmse;
 using test::FogScene;
-using test::relativeRmse;
 
 Medium fog() {
     return {0.12f, glm::vec3(0.9f), 0.2f};

@@ -4,6 +4,7 @@
 
 #include "gl/support/fog_test.hpp"
 
+#include <reference/fog_errors.hpp>
 #include <reference/shapes.hpp>
 
 #include <algorithm>
@@ -14,8 +15,8 @@
 namespace lamina {
 namespace {
 
+using reference::relativeRmse;
 using test::FogScene;
-using test::relativeRmse;
 
 constexpr double kPi = std::numbers::pi;
 

@@ -181,7 +181,7 @@ TEST_F(SlicemapSolidGlTest, ReportsOfOpenMeshesAreTheSameOnAllBackends) {
             for (const Backend backend :
                  {Backend::Overlap, Backend::Slicemap, Backend::MrtSlicemap, Backend::Automatic}) {
                 const Solid solid = voxelize(shape.mesh, transform, backend);
-                EXPECT_EQ(solid.oddColumns, expected)
+                EXPECT_EQ(solid.report.oddColumns, expected)
                     << shape.name << " by " << name(backend) << " of " << size.z << " slices";
                 EXPECT_TRUE(compare(solid.bits, overlap.bits)->equal())
                     << shape.name << " by " << name(backend);

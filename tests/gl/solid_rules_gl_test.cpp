@@ -216,7 +216,7 @@ TEST_F(SolidRulesGlTest, ClosedColumnsDoNotMakeAClosedMesh) {
     });
     ASSERT_EQ(sheets.triangles.size(), 4u);
     expectVotes(sheets, transform, "lid and floor");
-    const BitGrid byParity = voxelizeSolid(device(), SolidRule::Parity, sheets, transform).bits;
+    const BitGrid byParity = voxelizeSolid(device(), sheets, transform, SolidRule::Parity).bits;
     EXPECT_GT(errorShare(voted(sheets, transform).bits, byParity), 0.1);
 }
 
