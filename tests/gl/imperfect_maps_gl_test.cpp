@@ -44,6 +44,8 @@ protected:
     std::vector<Sample> draw(std::span<const GeometrySource> sources, const glm::dvec3& middle,
                              double near, std::uint32_t count) {
         auto samples = PointSamples::create(device().state(), count).value();
+        const auto prepared = samples.prepare(sources);
+        EXPECT_TRUE(prepared) << prepared.error().text;
         const auto drawn = samples.draw(sources, middle, near);
         EXPECT_TRUE(drawn) << drawn.error().text;
         std::vector<Sample> found(count);
@@ -125,6 +127,8 @@ TEST_F(ImperfectMapsGlTest, MapsHoldTheDistancesThatRaysFind) {
         transforms.push_back(
             EpipolarTransform::fit(reference::frontEye(), light.light, {16, 16, 16}).value());
     auto maker = ImperfectMapMaker::create(device().state(), desc).value();
+    const auto prepared = maker.prepare({&source, 1}, static_cast<std::uint32_t>(lights.size()));
+    ASSERT_TRUE(prepared) << prepared.error().text;
     const auto maps = maker.make({&source, 1}, lights, transforms);
     ASSERT_TRUE(maps) << maps.error().text;
     std::size_t hits = 0, wrong = 0, texels = 0, filledGaps = 0, holes = 0;
