@@ -39,15 +39,6 @@ struct Settings {
 
 // The engine's own pass: what the sun gives each pixel if it is not in shadow, and what the sky
 // does.
-constexpr const char* kVertex = R"(#version 450 core
-layout(location = 0) in vec3 position;
-layout(location = 0) uniform mat4 worldToClip;
-out vec3 world;
-void main() {
-    world = position;
-    gl_Position = worldToClip * vec4(position, 1.0);
-}
-)";
 constexpr const char* kFragment = R"(#version 450 core
 layout(location = 1) uniform vec3 albedo;
 layout(location = 2) uniform vec3 toSun;
@@ -98,8 +89,8 @@ Frame draw(const HostGl& gl, const std::vector<CourtThing>& things,
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     gl.Viewport(0, 0, static_cast<GLsizei>(view.size.x), static_cast<GLsizei>(view.size.y));
     gl.Enable(GL_DEPTH_TEST);
-    const GLuint program =
-        example::makeProgram(gl, {{GL_VERTEX_SHADER, kVertex}, {GL_FRAGMENT_SHADER, kFragment}});
+    const GLuint program = example::makeProgram(
+        gl, {{GL_VERTEX_SHADER, example::kWorldVertexShader}, {GL_FRAGMENT_SHADER, kFragment}});
     gl.UseProgram(program);
     const glm::mat4 worldToClip(view.worldToClip);
     const glm::vec3 toSun(sunDirection);

@@ -11,16 +11,6 @@
 namespace example {
 namespace {
 
-constexpr const char* kVertexShader = R"(#version 450
-layout(location = 0) uniform mat4 worldToClip;
-layout(location = 0) in vec3 position;
-out vec3 world;
-void main() {
-    world = position;
-    gl_Position = worldToClip * vec4(position, 1.0);
-}
-)";
-
 constexpr const char* kFragmentShader = R"(#version 450
 layout(location = 1) uniform vec4 albedo; // alpha: 1 for leaves, which light passes
 in vec3 world;
@@ -76,8 +66,8 @@ TreeStage::TreeStage(const HostGl& gl, int leavesPerTwig, std::uint32_t size)
     mView.worldToClip =
         glm::perspective(glm::radians(38.0), 1.0, 0.5, 400.0) *
         glm::lookAt(glm::dvec3(-3.4, 6.4, 15.6), glm::dvec3(1.9, 2.7, 0.9), glm::dvec3(0, 1, 0));
-    mProgram =
-        makeProgram(gl, {{GL_VERTEX_SHADER, kVertexShader}, {GL_FRAGMENT_SHADER, kFragmentShader}});
+    mProgram = makeProgram(
+        gl, {{GL_VERTEX_SHADER, kWorldVertexShader}, {GL_FRAGMENT_SHADER, kFragmentShader}});
     makeTargets();
 }
 

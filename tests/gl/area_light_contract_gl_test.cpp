@@ -16,25 +16,9 @@ namespace {
 
 using test::FogScene;
 using test::OddGlState;
+using test::smallDesc;
+using test::smallRectangle;
 using testing::HasSubstr;
-
-RectangleLight lamp(std::uint32_t texture = 0) {
-    RectangleLight light;
-    light.corner = {-1.0, 2.6, -3.0};
-    light.edgeU = {2.0, 0.0, 0.0};
-    light.edgeV = {0.0, 1.0, 0.4};
-    light.emission.texture = texture;
-    return light;
-}
-
-AreaLightDesc smallDesc() {
-    AreaLightDesc desc;
-    desc.virtualLights = 20;
-    desc.voxels = {32, 24, 130};
-    desc.mapTexels = 33;
-    desc.imperfect = {4096, 1024, 3};
-    return desc;
-}
 
 class AreaLightContractGlTest : public test::GlTest {
 protected:
@@ -86,7 +70,7 @@ TEST_F(AreaLightContractGlTest, EveryCallRestoresTheState) {
             desc.maps = maps;
             desc.gather = gather;
             auto plain = AreaLight::create(device(), desc).value();
-            ASSERT_TRUE(prepare(plain, lamp(mTexture)));
+            ASSERT_TRUE(prepare(plain, smallRectangle(mTexture)));
             const glm::dvec3 expected = airlight(plain);
             std::optional<AreaLight> effect;
             {
@@ -94,7 +78,7 @@ TEST_F(AreaLightContractGlTest, EveryCallRestoresTheState) {
                 expectUnchanged("create",
                                 [&] { effect.emplace(AreaLight::create(device(), desc).value()); });
                 expectUnchanged("prepare", [&] {
-                    const auto done = prepare(*effect, lamp(mTexture));
+                    const auto done = prepare(*effect, smallRectangle(mTexture));
                     ASSERT_TRUE(done) << done.error().text;
                 });
                 expectUnchanged("apply", [&] {
@@ -112,12 +96,12 @@ TEST_F(AreaLightContractGlTest, EveryCallRestoresTheState) {
 
 TEST_F(AreaLightContractGlTest, LaterFramesAllocateNothing) {
     auto effect = AreaLight::create(device(), smallDesc()).value();
-    ASSERT_TRUE(prepare(effect, lamp()));
+    ASSERT_TRUE(prepare(effect, smallRectangle()));
     (void)airlight(effect);
     const std::uint64_t bytes = device().allocatedBytes();
     EXPECT_GT(effect.gpuBytes(), 0u);
     for (int frame = 0; frame < 3; ++frame) {
-        RectangleLight moved = lamp();
+        RectangleLight moved = smallRectangle();
         moved.corner.x += 0.1 * frame;
         ASSERT_TRUE(prepare(effect, moved));
         (void)airlight(effect);
@@ -128,12 +112,12 @@ TEST_F(AreaLightContractGlTest, LaterFramesAllocateNothing) {
 TEST_F(AreaLightContractGlTest, AFullBudgetIsAnErrorAndTheEffectSurvivesIt) {
     auto effect = AreaLight::create(device(), smallDesc()).value();
     device().setMemoryBudget(device().allocatedBytes() + 100000);
-    const auto refused = prepare(effect, lamp());
+    const auto refused = prepare(effect, smallRectangle());
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::OutOfMemory);
     EXPECT_FALSE(effect.apply(mScene->view(), mScene->surfaces()));
     device().setMemoryBudget(0);
-    ASSERT_TRUE(prepare(effect, lamp()));
+    ASSERT_TRUE(prepare(effect, smallRectangle()));
     EXPECT_GT(airlight(effect).x, 0.0);
 }
 
@@ -145,7 +129,7 @@ TEST_F(AreaLightContractGlTest, EveryLightShines) {
     const LightSource lights[] = {PointLight{{0.5, 2.0, -2.0}},
                                   SpotLight{{0.5, 2.5, -2.0}, {0.0, -1.0, 0.3}},
                                   DirectionalLight{},
-                                  lamp(),
+                                  smallRectangle(),
                                   DiskLight{{0.0, 3.0, -2.0}, {0.0, -1.0, 0.5}, 0.5},
                                   SphereLight{{0.0, 2.5, -2.0}, 0.3},
                                   environment};
@@ -170,9 +154,9 @@ TEST_F(AreaLightContractGlTest, EveryLightShines) {
 
 TEST_F(AreaLightContractGlTest, TheTextureTintsTheLights) {
     auto effect = AreaLight::create(device(), smallDesc()).value();
-    ASSERT_TRUE(prepare(effect, lamp()));
+    ASSERT_TRUE(prepare(effect, smallRectangle()));
     const glm::dvec3 white = airlight(effect);
-    ASSERT_TRUE(prepare(effect, lamp(mTexture)));
+    ASSERT_TRUE(prepare(effect, smallRectangle(mTexture)));
     const glm::dvec3 tinted = airlight(effect);
     EXPECT_NEAR(tinted.y, white.y, 1e-3 * white.y);
     EXPECT_NEAR(tinted.z, 0.5 * white.z, 1e-3 * white.z);
@@ -208,18 +192,20 @@ TEST_F(AreaLightContractGlTest, MisuseIsRefused) {
     Medium medium;
     medium.anisotropy = 1.0f;
     const GeometrySource sources[] = {source()};
-    EXPECT_THAT(effect.prepare(mScene->view(), lamp(), medium, sources).error().text,
+    EXPECT_THAT(effect.prepare(mScene->view(), smallRectangle(), medium, sources).error().text,
                 HasSubstr("anisotropy"));
-    EXPECT_THAT(prepare(effect, lamp(12345)).error().text, HasSubstr("2D texture"));
+    EXPECT_THAT(prepare(effect, smallRectangle(12345)).error().text, HasSubstr("2D texture"));
     EXPECT_THAT(prepare(effect, PointLight{mScene->eye()}).error().text,
                 HasSubstr("virtual light 0"));
     EXPECT_THAT(
-        effect.prepare(mScene->view(), lamp(), {}, std::span<const LightDepthMap>()).error().text,
+        effect.prepare(mScene->view(), smallRectangle(), {}, std::span<const LightDepthMap>())
+            .error()
+            .text,
         HasSubstr("expected a shadow map for each of 20"));
     const GeometrySource bad[] = {MeshView{}};
-    EXPECT_FALSE(effect.prepare(mScene->view(), lamp(), {}, bad));
+    EXPECT_FALSE(effect.prepare(mScene->view(), smallRectangle(), {}, bad));
 
-    ASSERT_TRUE(prepare(effect, lamp()));
+    ASSERT_TRUE(prepare(effect, smallRectangle()));
     SurfaceTextures surfaces = mScene->surfaces();
     surfaces.depth = mTexture;
     EXPECT_THAT(effect.apply(mScene->view(), surfaces).error().text, HasSubstr("31 x 22"));
@@ -239,8 +225,8 @@ TEST_F(AreaLightContractGlTest, HostReflectanceAndTargetAreUsed) {
     desc.surfaceReflectance = "vec3 laminaSurfaceReflectance(vec3 normal, vec3 toLight, vec3 "
                               "toViewer) { return vec3(2.0, 0.0, 1.0) / 3.14159265; }";
     auto own = AreaLight::create(device(), desc).value();
-    ASSERT_TRUE(prepare(plain, lamp()));
-    ASSERT_TRUE(prepare(own, lamp()));
+    ASSERT_TRUE(prepare(plain, smallRectangle()));
+    ASSERT_TRUE(prepare(own, smallRectangle()));
     (void)airlight(plain);
     (void)airlight(own);
     const auto a = mScene->read(plain.sums()[1]);

@@ -19,27 +19,12 @@ namespace {
 
 using test::FogScene;
 using test::GlCalls;
+using test::smallDesc;
+using test::smallRectangle;
 using testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr float kNanFloat = std::numeric_limits<float>::quiet_NaN();
-
-RectangleLight lamp() {
-    RectangleLight light;
-    light.corner = {-1.0, 2.6, -3.0};
-    light.edgeU = {2.0, 0.0, 0.0};
-    light.edgeV = {0.0, 1.0, 0.4};
-    return light;
-}
-
-AreaLightDesc smallDesc() {
-    AreaLightDesc desc;
-    desc.virtualLights = 20;
-    desc.voxels = {32, 24, 130};
-    desc.mapTexels = 33;
-    desc.imperfect = {4096, 1024, 3};
-    return desc;
-}
 
 class AreaLightLimitsGlTest : public test::GlTest {
 protected:
@@ -95,7 +80,7 @@ TEST_F(AreaLightLimitsGlTest, Frames256LightsTakeNoMemoryAfterTheFirst) {
             auto effect = AreaLight::create(device(), desc).value();
             const GlCalls calls(table());
             const auto frame = [&](double x) {
-                RectangleLight moved = lamp();
+                RectangleLight moved = smallRectangle();
                 moved.corner.x += x;
                 ASSERT_TRUE(prepare(effect, moved));
                 (void)airlight(effect);
@@ -122,9 +107,9 @@ TEST_F(AreaLightLimitsGlTest, AllMemoryIsReported) {
             desc.layout = layout;
             const std::uint64_t before = device().allocatedBytes();
             auto effect = AreaLight::create(device(), desc).value();
-            ASSERT_TRUE(prepare(effect, lamp()));
+            ASSERT_TRUE(prepare(effect, smallRectangle()));
             (void)airlight(effect);
-            const auto stats = prepare(effect, lamp()).value();
+            const auto stats = prepare(effect, smallRectangle()).value();
             EXPECT_EQ(effect.gpuBytes(), device().allocatedBytes() - before);
             EXPECT_EQ(effect.gpuBytes(), stats.volumeBytes + stats.mapBytes + stats.targetBytes);
             EXPECT_GE(stats.volumeBytes, 20u * 32 * 24 * 2 * 16);
@@ -141,7 +126,7 @@ TEST_F(AreaLightLimitsGlTest, StagesAreTimedOnlyIfAsked) {
         EXPECT_EQ(effect.times(), AreaLightTimes{});
         // Times arrive some frames later where the GPU has timers.
         for (int frame = 0; frame < 6; ++frame) {
-            ASSERT_TRUE(prepare(effect, lamp()));
+            ASSERT_TRUE(prepare(effect, smallRectangle()));
             (void)airlight(effect);
             gl().Finish();
         }
@@ -156,7 +141,7 @@ TEST_F(AreaLightLimitsGlTest, StagesAreTimedOnlyIfAsked) {
         // Drawn maps are no stage of their own.
         desc.maps = ShadowMaps::Rendered;
         auto rendered = AreaLight::create(device(), desc).value();
-        ASSERT_TRUE(prepare(rendered, lamp()));
+        ASSERT_TRUE(prepare(rendered, smallRectangle()));
         EXPECT_EQ(rendered.times()[static_cast<std::size_t>(AreaLightStage::Maps)], 0.0);
     }
 }
@@ -168,7 +153,7 @@ TEST_F(AreaLightLimitsGlTest, OverBudgetIsAnErrorBeforeAnyWork) {
         std::uint64_t needed = 0;
         {
             auto effect = AreaLight::create(device(), desc).value();
-            needed = prepare(effect, lamp()).value().mapBytes + effect.gpuBytes();
+            needed = prepare(effect, smallRectangle()).value().mapBytes + effect.gpuBytes();
         }
         auto effect = AreaLight::create(device(), desc).value();
         const std::uint64_t held = device().allocatedBytes();
@@ -177,7 +162,7 @@ TEST_F(AreaLightLimitsGlTest, OverBudgetIsAnErrorBeforeAnyWork) {
         for (std::uint64_t budget = 1; budget < 2 * needed; budget += needed / 16 + 1) {
             device().setMemoryBudget(held + budget);
             const GlCalls calls(table());
-            const auto made = prepare(effect, lamp());
+            const auto made = prepare(effect, smallRectangle());
             if (made)
                 break;
             ++refusals;
@@ -186,7 +171,7 @@ TEST_F(AreaLightLimitsGlTest, OverBudgetIsAnErrorBeforeAnyWork) {
         }
         EXPECT_GT(refusals, 3u);
         device().setMemoryBudget(0);
-        ASSERT_TRUE(prepare(effect, lamp()));
+        ASSERT_TRUE(prepare(effect, smallRectangle()));
         const auto before = airlight(effect);
         // More triangles than before: refused, and the last frame still stands.
         const auto large =
@@ -194,14 +179,15 @@ TEST_F(AreaLightLimitsGlTest, OverBudgetIsAnErrorBeforeAnyWork) {
         const GeometrySource source = large.view();
         device().setMemoryBudget(device().allocatedBytes());
         if (maps == ShadowMaps::Imperfect) {
-            EXPECT_EQ(effect.prepare(mScene->view(), lamp(), {}, {&source, 1}).error().code,
-                      ErrorCode::OutOfMemory);
+            EXPECT_EQ(
+                effect.prepare(mScene->view(), smallRectangle(), {}, {&source, 1}).error().code,
+                ErrorCode::OutOfMemory);
         }
         device().setMemoryBudget(0);
         EXPECT_TRUE(airlight(effect) == before);
         // The targets, too, are found before any work.
         auto other = AreaLight::create(device(), desc).value();
-        ASSERT_TRUE(prepare(other, lamp()));
+        ASSERT_TRUE(prepare(other, smallRectangle()));
         device().setMemoryBudget(device().allocatedBytes() + 1000);
         {
             const GlCalls calls(table());
@@ -217,7 +203,7 @@ TEST_F(AreaLightLimitsGlTest, OverBudgetIsAnErrorBeforeAnyWork) {
 
 TEST_F(AreaLightLimitsGlTest, BadInputOfPrepareIsRefusedAndNothingIsLost) {
     auto effect = AreaLight::create(device(), smallDesc()).value();
-    ASSERT_TRUE(prepare(effect, lamp()));
+    ASSERT_TRUE(prepare(effect, smallRectangle()));
     const auto before = airlight(effect);
     const auto refuses = [&](const Result<AreaLightStats>& made, const char* text) {
         ASSERT_FALSE(made) << text;
@@ -226,22 +212,22 @@ TEST_F(AreaLightLimitsGlTest, BadInputOfPrepareIsRefusedAndNothingIsLost) {
         EXPECT_TRUE(airlight(effect) == before) << text;
     };
     for (const float extinction : {kNanFloat, -0.1f, std::numeric_limits<float>::infinity()})
-        refuses(prepare(effect, lamp(), {extinction}), "extinction");
+        refuses(prepare(effect, smallRectangle(), {extinction}), "extinction");
     for (const float albedo : {kNanFloat, -0.1f, 1.5f})
-        refuses(prepare(effect, lamp(), {0.1f, glm::vec3(0.5f, albedo, 0.5f)}), "albedo");
+        refuses(prepare(effect, smallRectangle(), {0.1f, glm::vec3(0.5f, albedo, 0.5f)}), "albedo");
     for (const float g : {kNanFloat, -1.0f, 1.0f})
-        refuses(prepare(effect, lamp(), {0.1f, glm::vec3(1.0f), g}), "anisotropy");
+        refuses(prepare(effect, smallRectangle(), {0.1f, glm::vec3(1.0f), g}), "anisotropy");
 
-    RectangleLight rectangle = lamp();
+    RectangleLight rectangle = smallRectangle();
     rectangle.edgeV = 2.0 * rectangle.edgeU;
     refuses(prepare(effect, rectangle), "area");
-    rectangle = lamp();
+    rectangle = smallRectangle();
     rectangle.corner.y = kNan;
     refuses(prepare(effect, rectangle), "rectangle");
-    rectangle = lamp();
+    rectangle = smallRectangle();
     rectangle.emission.radiance.y = kNanFloat;
     refuses(prepare(effect, rectangle), "radiance");
-    rectangle = lamp();
+    rectangle = smallRectangle();
     rectangle.emission.texture = 54321;
     refuses(prepare(effect, rectangle), "2D texture");
     rectangle.emission.texture = makeTexture(GL_TEXTURE_2D_ARRAY, GL_RGBA8);
@@ -258,30 +244,31 @@ TEST_F(AreaLightLimitsGlTest, BadInputOfPrepareIsRefusedAndNothingIsLost) {
     const GeometrySource sources[] = {mBuffers->view()};
     View view = mScene->view();
     view.size = {0, 4};
-    refuses(effect.prepare(view, lamp(), {}, sources), "size");
+    refuses(effect.prepare(view, smallRectangle(), {}, sources), "size");
     view = mScene->view();
     view.worldToClip[1][1] = kNan;
-    refuses(effect.prepare(view, lamp(), {}, sources), "");
+    refuses(effect.prepare(view, smallRectangle(), {}, sources), "");
     view.worldToClip = glm::dmat4(0.0);
-    refuses(effect.prepare(view, lamp(), {}, sources), "");
+    refuses(effect.prepare(view, smallRectangle(), {}, sources), "");
     view.worldToClip = glm::dmat4(1.0); // Orthographic.
-    refuses(effect.prepare(view, lamp(), {}, sources), "perspective");
+    refuses(effect.prepare(view, smallRectangle(), {}, sources), "perspective");
 
     MeshView broken = mBuffers->view();
     broken.indexCount += 3;
     const GeometrySource bad[] = {mBuffers->view(), broken};
-    refuses(effect.prepare(mScene->view(), lamp(), {}, bad), "source 1");
+    refuses(effect.prepare(mScene->view(), smallRectangle(), {}, bad), "source 1");
     const std::vector<LightDepthMap> maps(20);
-    refuses(effect.prepare(mScene->view(), lamp(), {}, std::span<const LightDepthMap>(maps)),
-            "depth map 0");
     refuses(
-        effect.prepare(mScene->view(), lamp(), {}, std::span<const LightDepthMap>(maps).first(19)),
-        "a shadow map for each of 20");
+        effect.prepare(mScene->view(), smallRectangle(), {}, std::span<const LightDepthMap>(maps)),
+        "depth map 0");
+    refuses(effect.prepare(mScene->view(), smallRectangle(), {},
+                           std::span<const LightDepthMap>(maps).first(19)),
+            "a shadow map for each of 20");
 }
 
 TEST_F(AreaLightLimitsGlTest, BadInputOfApplyIsRefusedAndNothingIsLost) {
     auto effect = AreaLight::create(device(), smallDesc()).value();
-    ASSERT_TRUE(prepare(effect, lamp()));
+    ASSERT_TRUE(prepare(effect, smallRectangle()));
     const auto before = airlight(effect);
     const auto refuses = [&](const SurfaceTextures& surfaces, GLuint target, const char* text) {
         const GlCalls calls(table());
@@ -360,7 +347,7 @@ TEST_F(AreaLightLimitsGlTest, TinyViewsAndFewLightsLoseNoLight) {
              {GatherMode::Full, GatherMode::Interleaved, GatherMode::Quarter}) {
             desc.gather = gather;
             auto effect = AreaLight::create(device(), desc).value();
-            ASSERT_TRUE(effect.prepare(scene.view(), lamp(), {}, {&source, 1}));
+            ASSERT_TRUE(effect.prepare(scene.view(), smallRectangle(), {}, {&source, 1}));
             const auto picture = effect.apply(scene.view(), scene.surfaces());
             ASSERT_TRUE(picture) << picture.error().text;
             pictures[static_cast<int>(gather)] = scene.read(*picture);

@@ -86,4 +86,22 @@ std::vector<glm::vec4> FogScene::read(GLuint texture) const {
     return texels;
 }
 
+RectangleLight smallRectangle(std::uint32_t texture) {
+    RectangleLight light;
+    light.corner = {-1.0, 2.6, -3.0};
+    light.edgeU = {2.0, 0.0, 0.0};
+    light.edgeV = {0.0, 1.0, 0.4};
+    light.emission.texture = texture;
+    return light;
+}
+
+AreaLightDesc smallDesc() {
+    AreaLightDesc desc;
+    desc.virtualLights = 20;
+    desc.voxels = {32, 24, 130};
+    desc.mapTexels = 33;
+    desc.imperfect = {4096, 1024, 3};
+    return desc;
+}
+
 } // namespace lamina::test

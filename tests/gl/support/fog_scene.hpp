@@ -46,4 +46,10 @@ private:
     GLuint mNormal = 0;
 };
 
+/// A rectangle above and behind what the scenes show, for tests to which its picture is all one.
+[[nodiscard]] RectangleLight smallRectangle(std::uint32_t texture = 0);
+
+/// Few lights, voxels and texels, of no round numbers.
+[[nodiscard]] AreaLightDesc smallDesc();
+
 } // namespace lamina::test
