@@ -30,8 +30,9 @@ struct VirtualLight {
 /// Virtual lights of a source, by Halton's sequence in bases 2 and 3; one for point, spot and
 /// directional lights, whatever `count`. Runs of the result are well spread, too.
 /// count: at least 1. offset: of the first point in the sequence; other offsets give other lights.
-/// Errors: InvalidArgument (a count of 0, non-finite or empty shapes, a strength that is negative or
-/// not finite, luminances of another size, negative or all 0, an environment without luminances).
+/// Errors: InvalidArgument (a count of 0, non-finite or empty shapes, a strength that is negative
+/// or not finite, luminances of another size, negative or all 0, an environment without
+/// luminances).
 [[nodiscard]] LAMINA_API Result<std::vector<VirtualLight>>
 sampleVirtualLights(const LightSource& source, std::uint32_t count, std::uint32_t offset = 0);
 
