@@ -117,6 +117,9 @@ RasterStateGuard::RasterStateGuard(DeviceState& device, GLuint uniformBuffers)
     mClipOrigin = integer(gl, GL_CLIP_ORIGIN);
     mClipDepth = integer(gl, GL_CLIP_DEPTH_MODE);
     gl.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    // Also the order in which a rasterizer takes the vertices, and so how it rounds.
+    mProvokingVertex = integer(gl, GL_PROVOKING_VERTEX);
+    gl.ProvokingVertex(GL_LAST_VERTEX_CONVENTION);
     gl.GetFloati_v(GL_VIEWPORT, 0, mViewport.data());
 
     mColorMasks.resize(device.limits.maxDrawBuffers);
@@ -139,6 +142,7 @@ RasterStateGuard::~RasterStateGuard() {
     gl.LogicOp(static_cast<GLenum>(mLogicOp));
     gl.PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(mPolygonMode[0]));
     gl.ClipControl(static_cast<GLenum>(mClipOrigin), static_cast<GLenum>(mClipDepth));
+    gl.ProvokingVertex(static_cast<GLenum>(mProvokingVertex));
     gl.ViewportIndexedfv(0, mViewport.data());
     for (GLuint i = 0; i < mColorMasks.size(); ++i) {
         const auto& mask = mColorMasks[i];

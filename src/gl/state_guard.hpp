@@ -40,9 +40,9 @@ private:
 
 /// Saves the GL state that a raster pass touches and puts it back when it goes out of scope.
 /// Between, the state is what a pass expects: no culling, no scissor, no logic op, all colours
-/// written, filled polygons, default clip control, no clip distances, no primitive restart,
-/// transform feedback paused, its object free to be rebound. Passes draw to framebuffers without
-/// depth or stencil, where those tests never apply.
+/// written, filled polygons, default clip control and provoking vertex, no clip distances, no
+/// primitive restart, transform feedback paused, its object free to be rebound. Passes draw to
+/// framebuffers without depth or stencil, where those tests never apply.
 class RasterStateGuard {
 public:
     /// uniformBuffers: uniform buffer bindings [0, uniformBuffers) that the pass rebinds.
@@ -73,6 +73,7 @@ private:
     std::array<GLint, 2> mPolygonMode{};
     GLint mClipOrigin = GL_LOWER_LEFT;
     GLint mClipDepth = GL_NEGATIVE_ONE_TO_ONE;
+    GLint mProvokingVertex = GL_LAST_VERTEX_CONVENTION;
     GLint mDrawFramebuffer = 0;
     GLint mProgram = 0;
     GLint mVertexArray = 0;

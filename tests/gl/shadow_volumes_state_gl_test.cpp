@@ -109,6 +109,21 @@ TEST_F(ShadowVolumesStateGlTest, EveryCallRestoresTheState) {
     }
 }
 
+TEST_F(ShadowVolumesStateGlTest, TheHostsProvokingVertexDoesNotMatter) {
+    const auto provoking = [this] {
+        GLint value = 0;
+        gl().GetIntegerv(GL_PROVOKING_VERTEX, &value);
+        return static_cast<GLenum>(value);
+    };
+    gl().ProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
+    {
+        const gl::RasterStateGuard guard(*device().state(), 0);
+        EXPECT_EQ(provoking(), static_cast<GLenum>(GL_LAST_VERTEX_CONVENTION));
+    }
+    EXPECT_EQ(provoking(), static_cast<GLenum>(GL_FIRST_VERTEX_CONVENTION));
+    gl().ProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+}
+
 TEST_F(ShadowVolumesStateGlTest, RefusesWhatItCannotServe) {
     const ShadowVolumesDesc desc{.lightMapTexels = 32};
     ShadowScene scene = mScene;
