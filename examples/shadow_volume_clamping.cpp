@@ -177,7 +177,11 @@ void run(const Settings& settings) {
         lamina::ShadowVolumesDesc desc;
     };
     const std::array<Step, 3> steps{
-        Step{"plain", {.cullCasters = false, .clampLayers = false}},
+        Step{"plain",
+             {.layers = settings.layers,
+              .lightMapTexels = 1024,
+              .cullCasters = false,
+              .clampLayers = false}},
         Step{"culled", {.layers = settings.layers, .lightMapTexels = 1024, .clampLayers = false}},
         Step{"culled and clamped", {.layers = settings.layers, .lightMapTexels = 1024}}};
     std::vector<float> light;
