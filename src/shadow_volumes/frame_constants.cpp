@@ -30,11 +30,9 @@ glm::vec4 layerAxis(const View& view, const glm::dvec4& light, std::uint32_t lay
 }
 
 Result<glm::dvec4> checkedLight(const glm::dvec4& light) {
-    const glm::dvec3 position = glm::dvec3(light) / light.w;
-    const double distance = glm::length(position);
-    if (light.w != 0.0 && std::isfinite(light.w) && std::isfinite(distance))
-        return glm::dvec4(position, 1.0);
     const double length = glm::length(glm::dvec3(light));
+    if (light.w == 1.0 && std::isfinite(length))
+        return light;
     if (light.w != 0.0 || !std::isfinite(length) || length == 0.0)
         return Error{ErrorCode::InvalidArgument,
                      "shadow volumes: expected a light at a finite position (w 1) or in a "

@@ -141,6 +141,10 @@ TEST_F(ShadowVolumesStateGlTest, RefusesWhatItCannotServe) {
     expectRefused(scene, desc, "expected a light");
     scene.light = {1e300, 1e300, 0, 0};
     expectRefused(scene, desc, "expected a light");
+    for (const double w : {0.5, -1.0, 2.0}) {
+        scene.light = {1.0, 5.0, 2.0, w};
+        expectRefused(scene, desc, "(w 1)");
+    }
     scene = mScene;
     scene.view.size = {0, 0};
     expectRefused(scene, desc, "0 x 0");

@@ -73,7 +73,8 @@ struct ShadowScene {
     /// float format that holds the depths in red, of view.size texels.
     std::uint32_t depthTexture = 0;
     /// Point light: position, 1. Directional light: direction towards the light (any length), 0.
-    /// World space.
+    /// No other w. World space. A point light may be about 1e5 times as far away as the scene is
+    /// large; beyond, float rounding shows in its shadows: use a directional one.
     glm::dvec4 light{0.0, 1.0, 0.0, 0.0};
     std::span<const ShadowCaster> casters;
     /// Everything that the depth buffer shows, casters too, in pieces of any size. Needed without
@@ -131,12 +132,13 @@ public:
     /// in place, but for a DrawSource that draws too little; after that and after other errors
     /// nothing is prepared.
     /// Errors: InvalidArgument (a view without an inverse, a depth texture of another kind or size,
-    /// a light that is nowhere, a caster without topology or with fewer vertices than it needs, a
-    /// MeshView that does not fit its buffers, no receivers where they are needed; an active
-    /// occlusion query of the host, for LayerSearch::Queries; an active transform feedback of the
-    /// host, for DrawSource casters), OutOfMemory, DeviceLimit, ShaderError.
-    /// Cost: two passes over the view's pixels, three over the casters' geometry (and one for each
-    /// layer with LayerSearch::Queries), and over the receivers' two if they are geometry.
+    /// a light that is nowhere or of a w other than 0 and 1, a caster without topology or with
+    /// fewer vertices than it needs, a MeshView that does not fit its buffers, no receivers where
+    /// they are needed; an active occlusion query of the host, for LayerSearch::Queries; an active
+    /// transform feedback of the host, for DrawSource casters), OutOfMemory, DeviceLimit,
+    /// ShaderError. Cost: two passes over the view's pixels, three over the casters' geometry (and
+    /// one for each layer with LayerSearch::Queries), and over the receivers' two if they are
+    /// geometry.
     [[nodiscard]] Result<void> prepare(const ShadowScene& scene);
 
     /// Draws the volumes of the last prepare() into a stencil buffer of ours and resolves it into
