@@ -77,6 +77,10 @@ Result<gl::Buffer> upload(const std::shared_ptr<gl::DeviceState>& device,
 
 Result<ShadowTopology> ShadowTopology::create(const Device& device, const GeometrySource& source,
                                               CasterSurface surface) {
+    if (surface > CasterSurface::Sheet)
+        return Error{ErrorCode::InvalidArgument, std::string(kOperation) +
+                                                     ": expected a value of CasterSurface, found " +
+                                                     std::to_string(static_cast<int>(surface))};
     const std::shared_ptr<gl::DeviceState>& state = device.state();
     const gl::DebugGroup group(*state, "lamina: shadow topology");
     TriangleCapture capture(state, CaptureContent::Positions);

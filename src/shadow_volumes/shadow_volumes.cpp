@@ -20,6 +20,9 @@ Result<void> check(const ShadowVolumesDesc& desc) {
     const auto invalid = [](const std::string& text) {
         return Error{ErrorCode::InvalidArgument, std::string(kOperation) + ": expected " + text};
     };
+    if (desc.search > LayerSearch::Queries)
+        return invalid("a value of LayerSearch, found " +
+                       std::to_string(static_cast<int>(desc.search)));
     if (desc.layers == 0 || desc.layers > LAMINA_SHADOW_MAX_LAYERS)
         return invalid("1 to 128 layers, found " + std::to_string(desc.layers));
     constexpr std::uint32_t kLeastTexels = 16;

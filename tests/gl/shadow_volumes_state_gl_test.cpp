@@ -183,6 +183,15 @@ TEST_F(ShadowVolumesStateGlTest, RefusesWhatItCannotServe) {
          {ShadowVolumesDesc{.layers = 0}, ShadowVolumesDesc{.layers = 129},
           ShadowVolumesDesc{.lightMapTexels = 8}, ShadowVolumesDesc{.depthBiasSlope = -1.0f}})
         EXPECT_EQ(ShadowVolumes::create(device(), bad).error().code, ErrorCode::InvalidArgument);
+    const auto search = ShadowVolumes::create(device(), {.search = static_cast<LayerSearch>(9)});
+    ASSERT_FALSE(search);
+    EXPECT_EQ(search.error().code, ErrorCode::InvalidArgument);
+    EXPECT_THAT(search.error().text, HasSubstr("LayerSearch, found 9"));
+    const auto surface =
+        ShadowTopology::create(device(), mHost->sources()[1], static_cast<CasterSurface>(9));
+    ASSERT_FALSE(surface);
+    EXPECT_EQ(surface.error().code, ErrorCode::InvalidArgument);
+    EXPECT_THAT(surface.error().text, HasSubstr("CasterSurface, found 9"));
     MeshView bad = std::get<MeshView>(mHost->sources()[1]);
     bad.vertexCount = 3;
     EXPECT_EQ(ShadowTopology::create(device(), bad).error().code, ErrorCode::InvalidMesh);

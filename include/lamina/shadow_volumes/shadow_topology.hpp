@@ -34,8 +34,9 @@ public:
     /// when the mesh bends. A DrawSource must draw the same triangles in the same order in every
     /// frame. Degenerate triangles, and those with positions that are not finite, never cast.
     /// Errors: InvalidArgument (a MeshView that does not fit its buffers, a DrawSource without a
-    /// draw), InvalidMesh (indices out of range), OutOfMemory, ShaderError.
-    /// GL: waits for the GPU. Cost: a sort of the vertices and of the edges on the host.
+    /// draw, no value of CasterSurface), InvalidMesh (indices out of range), OutOfMemory,
+    /// ShaderError. GL: waits for the GPU. Cost: a sort of the vertices and of the edges on the
+    /// host.
     [[nodiscard]] static Result<ShadowTopology>
     create(const Device& device, const GeometrySource& source,
            CasterSurface surface = CasterSurface::Automatic);
