@@ -71,7 +71,10 @@ enum class SliceLookup : std::uint8_t {
     /// Linear between slices: moving points see no steps. The slice that holds the point, and the
     /// part of the one before it that lies within one slice of the point, may be the point's own
     /// surface and are not read: what they hold is estimated from the two slices before. Exact
-    /// (equal to Sampled) where the four slices before the point's are empty.
+    /// (equal to Sampled) where the three slices before the point's are empty; elsewhere counts of
+    /// leaves are within 1 of Sampled's. Where leaves begin or end the estimate overshoots: behind
+    /// a single leaf the count rises to 1.5, stays there for a slice and falls to 1 over the next,
+    /// so T is not monotone along a ray.
     Linear,
 };
 
@@ -153,8 +156,9 @@ struct TransmittanceReceiver {
 /// lifetime and GL state.
 class LAMINA_API Transmittance {
 public:
-    /// Errors: InvalidArgument (a number in `desc` out of range), DeviceLimit, OutOfMemory,
-    /// ShaderError. Cost: compiles programs (milliseconds).
+    /// Errors: InvalidArgument (a value in `desc` out of range), DeviceLimit, OutOfMemory,
+    /// ShaderError. Sizes that the device cannot serve are found by prepare(), which allocates the
+    /// maps. Cost: compiles programs (milliseconds).
     [[nodiscard]] static Result<Transmittance> create(const Device& device,
                                                       const TransmittanceDesc& desc = {});
 
