@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,8 @@ using detail::isFinite;
 /// A point light whose casters lie within this angle of one direction needs one grid.
 constexpr double kWidestAngle = 50.0 * std::numbers::pi / 180.0;
 constexpr double kWidestCone = 1.4;
+/// Of the bounds: what shaders can still square.
+constexpr double kFarthest = 1e18;
 
 Error invalid(const std::string& text) {
     return Error{ErrorCode::InvalidArgument, "transmittance: " + text};
@@ -146,6 +149,12 @@ Result<void> check(const TransmittanceLight& light, const Box3& bounds) {
     if (bounds.isEmpty() || !isFinite(bounds.min) || !isFinite(bounds.max))
         return invalid("expected finite bounds that hold all casters, found an empty or infinite "
                        "box; pass the casters' world box");
+    if (glm::any(glm::greaterThan(glm::max(-bounds.min, bounds.max), glm::dvec3(kFarthest))))
+        return invalid("expected bounds with coordinates of at most 1e18, found larger ones; pass "
+                       "the casters' world box");
+    if (light.kind > LightKind::Directional)
+        return invalid("expected a value of LightKind, found " +
+                       std::to_string(static_cast<int>(light.kind)));
     if (light.kind != LightKind::Point &&
         !(glm::length(light.direction) > 0.0 && std::isfinite(glm::length(light.direction))))
         return invalid("expected a finite light direction of some length, found another");

@@ -1,5 +1,7 @@
 #include "transmittance/opaque_map.hpp"
 
+#include "core/finite.hpp"
+
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
@@ -99,6 +101,16 @@ Result<void> OpaqueMap::reserveCopy(GLenum format, const glm::uvec3& size) {
 
 Result<void> OpaqueMap::copy(const LightDepthMap& map, const TransmittanceLight& light) {
     const GladGLContext& gl = mDevice->gl;
+    if (map.kind > DepthMapKind::TextureCube)
+        return invalidMap("2D, array or cube texture, found DepthMapKind value " +
+                          std::to_string(static_cast<int>(map.kind)));
+    const bool isCube = map.kind == DepthMapKind::TextureCube;
+    const glm::dmat4& projection = isCube ? map.faceProjection : map.worldToClip;
+    if (!detail::isFinite(glm::mat4(projection)) || glm::determinant(projection) == 0.0)
+        return invalidMap(
+            std::string("texture drawn with an invertible ") +
+            (isCube ? "faceProjection" : "worldToClip") +
+            " of finite floats, found another matrix; pass the projection that it was drawn with");
     if (!gl.IsTexture(map.texture))
         return invalidMap("GL texture, found the name " + std::to_string(map.texture));
     GLint target = 0;
@@ -111,7 +123,6 @@ Result<void> OpaqueMap::copy(const LightDepthMap& map, const TransmittanceLight&
     gl.GetTextureLevelParameteriv(map.texture, 0, GL_TEXTURE_INTERNAL_FORMAT, &format);
     if (map.kind == DepthMapKind::TextureArray)
         gl.GetTextureLevelParameteriv(map.texture, 0, GL_TEXTURE_DEPTH, &layers);
-    const bool isCube = map.kind == DepthMapKind::TextureCube;
     const glm::uvec2 whole(width, height);
     const glm::uvec2 first = isCube ? glm::uvec2(0) : map.firstTexel;
     const glm::uvec2 size = isCube || map.size == glm::uvec2(0) ? whole : map.size;

@@ -18,9 +18,21 @@ Error invalid(const std::string& text) {
     return Error{ErrorCode::InvalidArgument, "transmittance: " + text};
 }
 
+/// Is `value` one of its enumeration?
+template<class Value>
+Result<void> checkValue(const char* what, Value value, Value last) {
+    if (value <= last)
+        return {};
+    return invalid(std::string("expected a value of ") + what + ", found " +
+                   std::to_string(static_cast<int>(value)));
+}
+
 } // namespace
 
 Result<void> checkTransmittance(const TransmittanceDesc& desc) {
+    if (auto valid = checkValue("TransmittanceModel", desc.model, TransmittanceModel::Absorption);
+        !valid)
+        return valid;
     if (desc.maxFaces < 1 || desc.maxFaces > LAMINA_TRANSMITTANCE_MAX_FACES)
         return invalid("expected 1 to 6 faces, found " + std::to_string(desc.maxFaces));
     if (desc.size.x == 0 || desc.size.y == 0 || desc.size.z == 0)
@@ -39,7 +51,16 @@ Result<void> checkTransmittance(const TransmittanceDesc& desc) {
     return {};
 }
 
+Result<void> checkTransmittance(NormalEncoding encoding) {
+    return checkValue("NormalEncoding", encoding, NormalEncoding::Unsigned);
+}
+
 Result<void> checkTransmittance(const TransmittanceSettings& settings) {
+    if (auto valid = checkValue("SliceLookup", settings.slices, SliceLookup::Linear); !valid)
+        return valid;
+    if (auto valid = checkValue("AbsorptionForm", settings.absorptionForm, AbsorptionForm::Linear);
+        !valid)
+        return valid;
     for (const glm::vec3& sigma : settings.attenuation)
         for (int channel = 0; channel < 3; ++channel)
             if (!(sigma[channel] >= 0.0f && sigma[channel] <= 1.0f))

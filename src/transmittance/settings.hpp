@@ -13,6 +13,7 @@ inline constexpr float kWidestFilter = 7.0f;
 /// Errors: InvalidArgument.
 [[nodiscard]] Result<void> checkTransmittance(const TransmittanceDesc& desc);
 [[nodiscard]] Result<void> checkTransmittance(const TransmittanceSettings& settings);
+[[nodiscard]] Result<void> checkTransmittance(NormalEncoding encoding);
 
 /// What shaders know of the light, its faces and the settings; all but the opaque map.
 [[nodiscard]] shared::LaminaTransmittanceConstants

@@ -292,6 +292,13 @@ Result<void> Transmittance::apply(const TransmittanceReceiver& receiver, std::ui
         return depths.error();
     if (auto valid = mImpl->checkColors(target, receiver.view, TextureRole::Target); !valid)
         return valid;
+    if (auto valid = checkTransmittance(receiver.normalEncoding); !valid)
+        return valid;
+    if (target == receiver.depthTexture || target == receiver.normalTexture)
+        return Error{ErrorCode::InvalidArgument,
+                     std::string("transmittance: expected a target that is not read, found the ") +
+                         (target == receiver.depthTexture ? "depth" : "normal") + " texture " +
+                         std::to_string(target) + "; draw to another one"};
     int normals = LAMINA_TRANSMITTANCE_NORMALS_FROM_DEPTH;
     if (receiver.normalTexture != 0) {
         if (auto valid =

@@ -486,6 +486,71 @@ TEST_F(TransmittanceApplyGlTest, BadLightsAndGridsAreRefused) {
     EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
+TEST_F(TransmittanceApplyGlTest, ValuesOfNoEnumerationAreRefused) {
+    const auto expectRefused = [](const auto& result, const char* text) {
+        ASSERT_FALSE(result) << text;
+        EXPECT_EQ(result.error().code, ErrorCode::InvalidArgument);
+        EXPECT_THAT(result.error().text, testing::HasSubstr(text));
+    };
+    expectRefused(Transmittance::create(device(), {.model = static_cast<TransmittanceModel>(9)}),
+                  "TransmittanceModel, found 9");
+    auto transmittance = Transmittance::create(device(), {.size = {32, 32, 32}}).value();
+    TransmittanceSettings settings;
+    settings.slices = static_cast<SliceLookup>(7);
+    expectRefused(transmittance.setSettings(settings), "SliceLookup, found 7");
+    settings = {};
+    settings.absorptionForm = static_cast<AbsorptionForm>(7);
+    expectRefused(transmittance.setSettings(settings), "AbsorptionForm, found 7");
+    TransmittanceLight light = mLight;
+    light.kind = static_cast<LightKind>(9);
+    expectRefused(transmittance.prepare(light, casters()), "LightKind, found 9");
+    ASSERT_TRUE(transmittance.prepare(mLight, casters()));
+    const gl::Texture depth = texture(GL_DEPTH_COMPONENT32F);
+    expectRefused(transmittance.apply({mView, depth.id(), 0, static_cast<NormalEncoding>(9)}),
+                  "NormalEncoding, found 9");
+}
+
+TEST_F(TransmittanceApplyGlTest, MatricesAndBoundsOfNoFloatAreRefused) {
+    auto transmittance = Transmittance::create(device(), {.size = {32, 32, 32}}).value();
+    TransmittanceCasters wrong = casters();
+    wrong.bounds = {glm::dvec3(-1e300), glm::dvec3(1e300)};
+    auto prepared = transmittance.prepare(mLight, wrong);
+    ASSERT_FALSE(prepared);
+    EXPECT_EQ(prepared.error().code, ErrorCode::InvalidArgument);
+    EXPECT_THAT(prepared.error().text, testing::HasSubstr("bounds"));
+
+    const gl::Texture depth = texture(GL_DEPTH_COMPONENT32F);
+    LightDepthMap map{.texture = depth.id()};
+    wrong = casters();
+    wrong.opaque = {};
+    wrong.opaqueMap = &map;
+    ASSERT_TRUE(transmittance.prepare(mLight, wrong));
+    for (const double value : {std::numeric_limits<double>::quiet_NaN(), 0.0, 1e300}) {
+        map.worldToClip = glm::dmat4(value);
+        prepared = transmittance.prepare(mLight, wrong);
+        ASSERT_FALSE(prepared) << value;
+        EXPECT_EQ(prepared.error().code, ErrorCode::InvalidArgument);
+        EXPECT_THAT(prepared.error().text, testing::HasSubstr("worldToClip"));
+    }
+    map = {.texture = depth.id(), .kind = DepthMapKind::HemisphereArray};
+    prepared = transmittance.prepare(mLight, wrong);
+    ASSERT_FALSE(prepared);
+    EXPECT_THAT(prepared.error().text, testing::HasSubstr("DepthMapKind value 3"));
+}
+
+TEST_F(TransmittanceApplyGlTest, TargetsThatAreReadAreRefused) {
+    auto transmittance = Transmittance::create(device(), {.size = {32, 32, 32}}).value();
+    ASSERT_TRUE(transmittance.prepare(mLight, casters()));
+    const gl::Texture depth = texture(GL_R32F);
+    const gl::Texture normals = texture(GL_RGBA16F);
+    for (const GLuint target : {depth.id(), normals.id()}) {
+        const auto applied = transmittance.apply({mView, depth.id(), normals.id()}, target);
+        ASSERT_FALSE(applied);
+        EXPECT_EQ(applied.error().code, ErrorCode::InvalidArgument);
+        EXPECT_THAT(applied.error().text, testing::HasSubstr("a target that is not read"));
+    }
+}
+
 TEST_F(TransmittanceApplyGlTest, TexturesOfOtherFormatsAreRefused) {
     auto transmittance = Transmittance::create(device(), {.size = {32, 32, 32}}).value();
     ASSERT_TRUE(transmittance.prepare(mLight, casters()));

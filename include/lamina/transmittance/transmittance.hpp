@@ -66,7 +66,8 @@ struct TransmittanceDesc {
 
 /// How the slices of a column are looked up.
 enum class SliceLookup : std::uint8_t {
-    /// The set slices before the one that holds the point, as [ED06] do. Changes in steps.
+    /// The set slices before the one that holds the point, as [ED06] do: their exact count, so T
+    /// never grows along a ray of the light. Changes in steps.
     Sampled,
     /// Linear between slices: moving points see no steps. The slice that holds the point, and the
     /// part of the one before it that lies within one slice of the point, may be the point's own
@@ -172,11 +173,13 @@ public:
     [[nodiscard]] const TransmittanceSettings& settings() const;
 
     /// Builds the maps of `light` for this frame. Does not wait for the GPU.
-    /// Errors: InvalidArgument (light, empty or non-finite bounds, sources and materials as
-    /// Voxelizer::voxelize() says, a host map that does not fit), DeviceLimit (a point light that
-    /// needs more faces than desc.maxFaces), OutOfMemory, ShaderError; the maps are then undefined
-    /// and must be prepared again. GL: as Voxelizer::voxelize(); a host map written by shaders
-    /// needs GL_TEXTURE_UPDATE_BARRIER_BIT. Cost: LeafCount one pass over the leaves for each face
+    /// Errors: InvalidArgument (light, bounds that are empty, not finite or beyond 1e18, sources
+    /// and materials as Voxelizer::voxelize() says, a host map that does not fit, of a kind other
+    /// than 2D, array and cube or of a matrix that is not finite or has no inverse), DeviceLimit (a
+    /// point light that needs more faces than desc.maxFaces, a desc too large for the device),
+    /// OutOfMemory, ShaderError; the maps are then undefined and must be prepared again.
+    /// GL: as Voxelizer::voxelize(); a host map written by shaders needs
+    /// GL_TEXTURE_UPDATE_BARRIER_BIT. Cost: LeafCount one pass over the leaves for each face
     /// (one more with local ranges), Absorption one over leaves and opaque casters and a scan of
     /// the volume; one over the opaque casters.
     [[nodiscard]] Result<TransmittanceStats> prepare(const TransmittanceLight& light,
@@ -190,7 +193,8 @@ public:
     /// need GL_TEXTURE_FETCH_BARRIER_BIT. Cost: a full-screen pass.
     [[nodiscard]] Result<std::uint32_t> apply(const TransmittanceReceiver& receiver);
     /// The same into level 0 of the host's 2D texture of a colour-renderable float or normalized
-    /// format.
+    /// format. InvalidArgument too for a target that is the receiver's depth or normal texture: a
+    /// pass cannot draw to what it reads.
     [[nodiscard]] Result<void> apply(const TransmittanceReceiver& receiver, std::uint32_t target);
 
     /// The `#define` lines with which a shader of the engine must include
