@@ -3,6 +3,7 @@
 #include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
+#include "refraction/receiver_textures.hpp"
 #include "refraction/seamless_cube_maps.hpp"
 
 #include <algorithm>
@@ -48,14 +49,8 @@ void Environment::Impl::dispatch(std::uint32_t level) {
 
 Result<void> Environment::Impl::load(std::uint32_t source, GLenum target, GLuint program) {
     const GladGLContext& gl = device->gl;
-    GLint found = 0;
-    if (gl.IsTexture(source))
-        gl.GetTextureParameteriv(source, GL_TEXTURE_TARGET, &found);
-    if (static_cast<GLenum>(found) != target)
-        return Error{ErrorCode::InvalidArgument,
-                     "environment: expected the name of a " +
-                         std::string(target == GL_TEXTURE_2D ? "2D texture" : "cube map") +
-                         ", found " + std::to_string(source) + ", which is none"};
+    if (auto fits = checkEnvironmentTexture(device, source, target); !fits)
+        return fits;
     const gl::DebugGroup group(*device, "lamina: load environment");
     const gl::ComputeStateGuard compute(*device, 0, 0);
     const gl::TextureUnitGuard textures(*device, 0, 1);

@@ -3,6 +3,8 @@
 #include "gl/host_texture.hpp"
 #include "gl/objects.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <string>
 
 namespace lamina {
@@ -38,6 +40,49 @@ bool holds(const std::shared_ptr<gl::DeviceState>& device, GLuint texture, Conte
     return content == Content::Colors || isDrawable(device, texture);
 }
 
+/// "4, which is no cube map"; empty if it is one.
+std::string notOfTarget(const GladGLContext& gl, GLuint texture, GLenum target) {
+    GLint found = 0;
+    if (gl.IsTexture(texture))
+        gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &found);
+    if (static_cast<GLenum>(found) == target)
+        return {};
+    return std::to_string(texture) + (found == 0                ? ", which is none"
+                                      : target == GL_TEXTURE_2D ? ", which is no 2D texture"
+                                                                : ", which is no cube map");
+}
+
+/// Do look-ups with the texture's own filter find all levels that they need?
+bool isComplete(const GladGLContext& gl, GLuint texture) {
+    const auto value = [&](GLenum name) {
+        GLint value = 0;
+        gl.GetTextureParameteriv(texture, name, &value);
+        return value;
+    };
+    const auto sizeOf = [&](GLint level) {
+        GLint width = 0, height = 0;
+        gl.GetTextureLevelParameteriv(texture, level, GL_TEXTURE_WIDTH, &width);
+        gl.GetTextureLevelParameteriv(texture, level, GL_TEXTURE_HEIGHT, &height);
+        return std::min(width, height) > 0 ? std::max(width, height) : 0;
+    };
+    if (value(GL_TEXTURE_IMMUTABLE_FORMAT) == GL_TRUE)
+        return true;
+    const GLint base = value(GL_TEXTURE_BASE_LEVEL);
+    const GLint size = sizeOf(base);
+    if (size == 0)
+        return false;
+    const GLint filter = value(GL_TEXTURE_MIN_FILTER);
+    if (filter == GL_NEAREST || filter == GL_LINEAR)
+        return true;
+    const GLint last =
+        std::min(base + static_cast<GLint>(std::bit_width(static_cast<std::uint32_t>(size))) - 1,
+                 value(GL_TEXTURE_MAX_LEVEL));
+    for (GLint level = base + 1; level <= last; ++level)
+        if (sizeOf(level) == 0)
+            return false;
+    return base <= last;
+}
+
 Result<void> checkTexture(const std::shared_ptr<gl::DeviceState>& device, GLuint texture,
                           const glm::uvec2& pixels, std::string_view what, Content content) {
     const GladGLContext& gl = device->gl;
@@ -46,11 +91,8 @@ Result<void> checkTexture(const std::shared_ptr<gl::DeviceState>& device, GLuint
                      "refraction: expected a " + std::string(what) + " texture, 2D, of " +
                          size(pixels) + " pixels and " + nameOf(content) + ", found " + found};
     };
-    GLint target = 0;
-    if (gl.IsTexture(texture))
-        gl.GetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-    if (target != GL_TEXTURE_2D)
-        return invalid("name " + std::to_string(texture) + ", which is none");
+    if (const std::string found = notOfTarget(gl, texture, GL_TEXTURE_2D); !found.empty())
+        return invalid("name " + found);
     GLint width = 0, height = 0;
     gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &width);
     gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &height);
@@ -69,6 +111,25 @@ Result<void> checkDepths(const gl::DeviceState& device, GLuint texture, const gl
 }
 
 } // namespace
+
+Result<void> checkEnvironmentTexture(const std::shared_ptr<gl::DeviceState>& device, GLuint texture,
+                                     GLenum target) {
+    const auto invalid = [&](const std::string& found) {
+        return Error{ErrorCode::InvalidArgument,
+                     "environment: expected the name of a " +
+                         std::string(target == GL_TEXTURE_2D ? "2D texture" : "cube map") +
+                         ", found " + found};
+    };
+    if (const std::string found = notOfTarget(device->gl, texture, target); !found.empty())
+        return invalid(found);
+    const std::string name = std::to_string(texture);
+    if (!isComplete(device->gl, texture))
+        return invalid(name + ", which is incomplete; give it storage for all levels that its "
+                              "GL_TEXTURE_MIN_FILTER asks for");
+    if (!holds(device, texture, Content::Colors))
+        return invalid(name + ", whose format is none of floats or normalized numbers");
+    return {};
+}
 
 Result<void> checkReceiverTextures(const std::shared_ptr<gl::DeviceState>& device,
                                    const RefractionReceiver& receiver, GLuint target) {

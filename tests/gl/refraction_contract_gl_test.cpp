@@ -54,9 +54,53 @@ TEST_F(RefractionContractGlTest, RefusesTexturesOfTheWrongKind) {
         "behind");
     refused([&](Receiver&, GLuint& target) { target = integers.id(); }, "target");
     refused([&](Receiver&, GLuint& target) { target = shared.id(); }, "drawn to");
-    refused([&](Receiver&, GLuint& target) { target = environment.texture(); }, "which is none");
+    refused([&](Receiver&, GLuint& target) { target = environment.texture(); },
+            "which is no 2D texture");
+    refused([&](Receiver&, GLuint& target) { target = 9999; }, "which is none");
     refused([&](Receiver& r, GLuint&) { r.view.size = {0, 4}; }, "at least 1 x 1");
     EXPECT_TRUE(refraction.apply(receiverOf(drawn), floats.id())) << "nothing is lost";
+}
+
+TEST_F(RefractionContractGlTest, RefusesSurroundingsOfTheWrongKind) {
+    auto environment = Environment::create(device(), {.size = 4}).value();
+    const auto cubeOf = [&](GLenum format) {
+        auto cube = gl::Texture::create(device().state(), "test", GL_TEXTURE_CUBE_MAP);
+        if (format != GL_NONE)
+            gl().TextureStorage2D(cube.id(), 1, format, 4, 4);
+        return cube;
+    };
+    const gl::Texture floats = test::makeTexture(device(), GL_RGBA16F, {8, 4});
+    const gl::Texture integers = test::makeTexture(device(), GL_RGBA32UI, {8, 4});
+    const gl::Texture depths = test::makeTexture(device(), GL_DEPTH_COMPONENT32F, {8, 4});
+    const gl::Texture empty = gl::Texture::create(device().state(), "test", GL_TEXTURE_2D);
+    // Only level 0 of a pyramid.
+    const gl::Texture pyramid = gl::Texture::create(device().state(), "test", GL_TEXTURE_2D);
+    gl().BindTexture(GL_TEXTURE_2D, pyramid.id());
+    gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, 8, 4, 0, GL_RGBA, GL_FLOAT, nullptr);
+    gl().BindTexture(GL_TEXTURE_2D, 0);
+    const gl::Texture cube = cubeOf(GL_RGBA16F);
+    const gl::Texture cubeOfIntegers = cubeOf(GL_RGBA32UI);
+    const gl::Texture cubeOfDepths = cubeOf(GL_DEPTH_COMPONENT32F);
+    const gl::Texture cubeOfNothing = cubeOf(GL_NONE);
+    const auto refused = [](const Result<void>& loaded, const std::string& text) {
+        ASSERT_FALSE(loaded) << text;
+        EXPECT_EQ(loaded.error().code, ErrorCode::InvalidArgument);
+        EXPECT_NE(loaded.error().text.find(text), std::string::npos) << loaded.error().text;
+    };
+    refused(environment.loadEquirectangular(9999), "9999, which is none");
+    refused(environment.loadEquirectangular(cube.id()), "which is no 2D texture");
+    refused(environment.loadEquirectangular(integers.id()), "format");
+    refused(environment.loadEquirectangular(depths.id()), "format");
+    refused(environment.loadEquirectangular(empty.id()), "incomplete");
+    refused(environment.loadEquirectangular(pyramid.id()), "incomplete");
+    refused(environment.loadCubeMap(floats.id()), "which is no cube map");
+    refused(environment.loadCubeMap(cubeOfIntegers.id()), "format");
+    refused(environment.loadCubeMap(cubeOfDepths.id()), "format");
+    refused(environment.loadCubeMap(cubeOfNothing.id()), "incomplete");
+    EXPECT_TRUE(environment.loadEquirectangular(floats.id()));
+    EXPECT_TRUE(environment.loadCubeMap(cube.id()));
+    gl().TextureParameteri(pyramid.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    EXPECT_TRUE(environment.loadEquirectangular(pyramid.id()));
 }
 
 /// What cannot be prepared says so; the next object can.

@@ -37,7 +37,8 @@ public:
 
     /// Copies a complete cube map of any float or normalized format and size; linear colours. Level
     /// 0 is read with the texture's own filter (mind aliasing if it is much larger than `size`).
-    /// Errors: InvalidArgument (no cube map of this name). GL: writes of shaders need
+    /// Errors: InvalidArgument (no cube map of this name; one of integers or depths, or
+    /// that is incomplete); what it held stays. GL: writes of shaders need
     /// GL_TEXTURE_FETCH_BARRIER_BIT. Cost: a pass over the texels of every level.
     [[nodiscard]] Result<void> loadCubeMap(std::uint32_t texture);
     /// The same of a 2D texture in the equirectangular (latitude-longitude) projection: its rows
