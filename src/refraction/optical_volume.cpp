@@ -1,10 +1,13 @@
 #include "refraction/optical_volume.hpp"
 
+#include "core/finite.hpp"
 #include "gl/binding_guards.hpp"
 #include "gl/state_guard.hpp"
 #include "refraction/refraction_constants.hpp"
 
-#include <cmath>
+#include <glm/common.hpp>
+
+#include <algorithm>
 #include <string>
 
 namespace lamina {
@@ -31,8 +34,23 @@ std::optional<glm::vec4> sharedOpticsOf(std::span<const Material> materials) {
     return opticsOf(materials.front());
 }
 
-bool isFinite(const Box3& box) {
-    return std::isfinite(glm::dot(box.min, glm::dvec3(1.0)) + glm::dot(box.max, glm::dvec3(1.0)));
+/// Shaders square lengths, as floats: the longest side of a box is at least one over this, and no
+/// coordinate is beyond it.
+constexpr double kFarthest = 1e15;
+
+Result<void> checkBounds(const Box3& bounds) {
+    const auto invalid = [](const std::string& text) {
+        return Error{ErrorCode::InvalidArgument, "refraction: expected " + text};
+    };
+    if (bounds.isEmpty() || !detail::isFinite(bounds))
+        return invalid("finite bounds that hold the object, found none");
+    const glm::dvec3 size = bounds.size();
+    const auto greatest = [](const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); };
+    if (greatest(size) < 1.0 / kFarthest)
+        return invalid("bounds of at least 1e-15 along their longest side, found a point");
+    if (greatest(glm::max(glm::abs(bounds.min), glm::abs(bounds.max))) > kFarthest)
+        return invalid("bounds within 1e15 of the origin, found farther ones");
+    return {};
 }
 
 } // namespace
@@ -104,14 +122,13 @@ Result<void> OpticalVolume::merge(const VolumeGrid& along, int axis) {
 
 Result<VolumeStats> OpticalVolume::build(std::span<const GeometrySource> sources,
                                          std::span<const Material> materials, const Box3& bounds) {
-    if (bounds.isEmpty() || !isFinite(bounds))
-        return Error{ErrorCode::InvalidArgument,
-                     "refraction: expected finite bounds that hold the object, found none"};
+    if (auto valid = checkBounds(bounds); !valid)
+        return valid.error();
     mSharedOptics = sharedOpticsOf(materials);
     if (auto reserved = reserve(); !reserved)
         return reserved.error();
     const glm::dvec3 size = bounds.size();
-    const double extent = std::max({size.x, size.y, size.z, 1e-30});
+    const double extent = std::max({size.x, size.y, size.z});
     const double half = 0.5 * extent * mVoxels / (mVoxels - 2.0 * kMargin);
     const Box3 cube{bounds.center() - half, bounds.center() + half};
     mPlace = {glm::vec3(cube.min), static_cast<float>(mVoxels / (2.0 * half))};

@@ -121,6 +121,14 @@ TEST_F(RefractionContractGlTest, RefusesObjectsAndGoesOn) {
         EXPECT_EQ(codeOf({{&source, 1}, {}, Box3{}}), ErrorCode::InvalidArgument);
         EXPECT_EQ(codeOf({{&source, 1}, {}, {glm::dvec3(nowhere), glm::dvec3(1)}}),
                   ErrorCode::InvalidArgument);
+        EXPECT_EQ(codeOf({{&source, 1}, {}, {glm::dvec3(0), glm::dvec3(0)}}),
+                  ErrorCode::InvalidArgument);
+        EXPECT_EQ(codeOf({{&source, 1}, {}, {glm::dvec3(-1e300), glm::dvec3(1e300)}}),
+                  ErrorCode::InvalidArgument);
+        if (model != RefractionModel::VolumeIntegral) {
+            EXPECT_EQ(codeOf({{&source, 1}, {}, {glm::dvec3(-1e30), glm::dvec3(1e30)}}),
+                      ErrorCode::InvalidArgument);
+        }
         MeshView beyond = buffers.view();
         beyond.indexCount += 3;
         const GeometrySource unfit = beyond;
@@ -147,6 +155,8 @@ TEST_F(RefractionContractGlTest, RefusesObjectsAndGoesOn) {
         device().setMemoryBudget(0);
         EXPECT_TRUE(fresh.prepare({{&source, 1}, {&mClear, 1}, bounds}, mView));
         EXPECT_TRUE(fresh.apply(receiverOf(drawn)));
+        EXPECT_TRUE(fresh.prepare({{}, {}, {glm::dvec3(-1, -1, 0), glm::dvec3(1, 1, 0)}}, mView))
+            << "a flat box is no point";
     }
 }
 

@@ -88,7 +88,9 @@ struct RefractionObject {
     /// surface and ends at its back; surfaces within others hold other materials. None: the default
     /// Material alone.
     std::span<const Material> materials;
-    Box3 bounds; ///< A world box that holds the sources; the tighter, the finer the voxels.
+    /// A world box that holds the sources; the tighter, the finer the voxels. TwoSurfaces,
+    /// ManySurfaces: within 1e15 of the origin, its longest side at least 1e-15.
+    Box3 bounds;
 };
 
 /// What one prepare() call did; known without waiting for the GPU.
