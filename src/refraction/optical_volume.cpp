@@ -4,6 +4,7 @@
 #include "gl/binding_guards.hpp"
 #include "gl/state_guard.hpp"
 #include "refraction/refraction_constants.hpp"
+#include "refraction/refraction_settings.hpp"
 
 #include <glm/common.hpp>
 
@@ -37,6 +38,16 @@ std::optional<glm::vec4> sharedOpticsOf(std::span<const Material> materials) {
 /// Shaders square lengths, as floats: the longest side of a box is at least one over this, and no
 /// coordinate is beyond it.
 constexpr double kFarthest = 1e15;
+
+Result<void> checkIndices(std::span<const Material> materials) {
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        if (materials[i].refractiveIndex > kGreatestIndex)
+            return Error{ErrorCode::InvalidArgument,
+                         "refraction: material " + std::to_string(i) +
+                             ": expected a refractive index of 1 to 4, found " +
+                             std::to_string(materials[i].refractiveIndex)};
+    return {};
+}
 
 Result<void> checkBounds(const Box3& bounds) {
     const auto invalid = [](const std::string& text) {
@@ -123,6 +134,8 @@ Result<void> OpticalVolume::merge(const VolumeGrid& along, int axis) {
 Result<VolumeStats> OpticalVolume::build(std::span<const GeometrySource> sources,
                                          std::span<const Material> materials, const Box3& bounds) {
     if (auto valid = checkBounds(bounds); !valid)
+        return valid.error();
+    if (auto valid = checkIndices(materials); !valid)
         return valid.error();
     mSharedOptics = sharedOpticsOf(materials);
     if (auto reserved = reserve(); !reserved)

@@ -22,7 +22,7 @@ struct Range {
 Result<void> checkSettings(const RefractionSettings& settings) {
     constexpr float kLeast = std::numeric_limits<float>::min();
     const Range ranges[] = {
-        {"refractive index", settings.refractiveIndex, 1.0f, 4.0f},
+        {"refractive index", settings.refractiveIndex, 1.0f, kGreatestIndex},
         {"reflection", settings.reflection, 0.0f, 1.0f},
         {"bend length", settings.bendLength, 0.0f, kInfinity},
         {"absorption", settings.absorption.x, 0.0f, kInfinity},

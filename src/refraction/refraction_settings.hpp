@@ -6,6 +6,9 @@
 
 namespace lamina {
 
+/// Of settings and materials.
+inline constexpr float kGreatestIndex = 4.0f;
+
 /// Errors: InvalidArgument, naming the value.
 [[nodiscard]] Result<void> checkSettings(const RefractionSettings& settings);
 

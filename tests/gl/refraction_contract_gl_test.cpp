@@ -134,7 +134,7 @@ TEST_F(RefractionContractGlTest, RefusesObjectsAndGoesOn) {
         const GeometrySource unfit = beyond;
         EXPECT_EQ(codeOf({{&unfit, 1}, {}, bounds}), ErrorCode::InvalidArgument);
         if (model != RefractionModel::VolumeIntegral) {
-            for (const float index : {0.9f, std::numeric_limits<float>::quiet_NaN(),
+            for (const float index : {0.9f, 4.1f, 1e30f, std::numeric_limits<float>::quiet_NaN(),
                                       std::numeric_limits<float>::infinity()}) {
                 Material odd = mClear;
                 odd.refractiveIndex = index;

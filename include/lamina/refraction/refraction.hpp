@@ -83,10 +83,10 @@ struct RefractionSettings {
 /// What refracts in a frame. Borrowed for the call.
 struct RefractionObject {
     std::span<const GeometrySource> sources; ///< Closed surfaces.
-    /// TwoSurfaces, ManySurfaces: by material id: refractiveIndex, and transmission times color is
-    /// the share of light left after one world unit inside. A material begins at the front of a
-    /// surface and ends at its back; surfaces within others hold other materials. None: the default
-    /// Material alone.
+    /// TwoSurfaces, ManySurfaces: by material id: refractiveIndex, 1 to 4, and transmission times
+    /// color is the share of light left after one world unit inside. A material begins at the front
+    /// of a surface and ends at its back; surfaces within others hold other materials. None: the
+    /// default Material alone.
     std::span<const Material> materials;
     /// A world box that holds the sources; the tighter, the finer the voxels. TwoSurfaces,
     /// ManySurfaces: within 1e15 of the origin, its longest side at least 1e-15.
