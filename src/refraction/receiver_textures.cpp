@@ -156,6 +156,13 @@ Result<void> checkReceiverTextures(const std::shared_ptr<gl::DeviceState>& devic
             if (auto fits = checkTexture(device, part.texture, pixels, part.what, part.content);
                 !fits)
                 return fits;
+    for (const GLuint read :
+         {receiver.depthTexture, receiver.normalTexture, receiver.colorDepthTexture})
+        if (read == target)
+            return Error{ErrorCode::InvalidArgument,
+                         "refraction: expected a target that is none of the textures of depths and "
+                         "normals, found name " +
+                             std::to_string(target) + " in both places; draw to another texture"};
     return {};
 }
 

@@ -29,6 +29,7 @@ TEST_F(RefractionContractGlTest, RefusesTexturesOfTheWrongKind) {
     const gl::Texture integers = test::makeTexture(device(), GL_RGBA32UI, kSize);
     const gl::Texture shared = test::makeTexture(device(), GL_RGB9_E5, kSize);
     const gl::Texture floats = test::makeTexture(device(), GL_RGBA16F, kSize);
+    const gl::Texture otherDepths = test::makeTexture(device(), GL_R32F, kSize);
     const gl::Texture small = test::makeTexture(device(), GL_RGBA16F, {8, 8});
     const auto refused = [&](auto&& change, const std::string& text) {
         RefractionReceiver receiver = receiverOf(drawn);
@@ -57,7 +58,19 @@ TEST_F(RefractionContractGlTest, RefusesTexturesOfTheWrongKind) {
     refused([&](Receiver&, GLuint& target) { target = environment.texture(); },
             "which is no 2D texture");
     refused([&](Receiver&, GLuint& target) { target = 9999; }, "which is none");
+    const std::string loop = "in both places";
+    refused([&](Receiver& r, GLuint& target) { target = r.normalTexture; }, loop);
+    refused([&](Receiver& r, GLuint& target) { target = r.depthTexture; }, loop);
+    refused(
+        [&](Receiver& r, GLuint& target) {
+            r.colorTexture = floats.id();
+            target = r.colorDepthTexture = otherDepths.id();
+        },
+        loop);
     refused([&](Receiver& r, GLuint&) { r.view.size = {0, 4}; }, "at least 1 x 1");
+    RefractionReceiver both = receiverOf(drawn);
+    both.colorTexture = floats.id();
+    EXPECT_TRUE(refraction.apply(both, floats.id())) << "colours are copied";
     EXPECT_TRUE(refraction.apply(receiverOf(drawn), floats.id())) << "nothing is lost";
 }
 

@@ -171,7 +171,8 @@ public:
     /// mipmaps.
     [[nodiscard]] Result<std::uint32_t> apply(const RefractionReceiver& receiver);
     /// The same into level 0 of the host's 2D texture of a colour-renderable float or normalized
-    /// format; pixels that do not show the object keep what they hold.
+    /// format; pixels that do not show the object keep what they hold. Of the receiver's textures
+    /// only colorTexture may be the target; InvalidArgument else.
     [[nodiscard]] Result<void> apply(const RefractionReceiver& receiver, std::uint32_t target);
 
     /// Of the last prepare() or apply(): an open surface is no error, its pixels are bounded and
