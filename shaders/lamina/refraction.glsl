@@ -350,6 +350,9 @@ LaminaRefracted laminaRefract(vec3 world, vec3 normal, vec3 direction, vec2 pixe
 // length; pixel: window coordinates of the point; ray: the way of the light that passes through.
 vec4 laminaRefraction(vec3 world, vec3 normal, vec2 pixel, out LaminaRefracted ray) {
     vec3 towards = laminaTowardsViewer(laminaRefractionBlock.view, world);
+    // The squares of very long and very short ones are beyond floats.
+    float largest = max(max(abs(normal.x), abs(normal.y)), abs(normal.z));
+    normal = largest > 0.0 ? normal / largest : vec3(0.0);
     normal = dot(normal, normal) > 0.0 ? normalize(normal) : towards;
     // Interpolated normals may turn away at the silhouette: they are taken to be just seen.
     const float kLeastCosine = 0.01;

@@ -116,6 +116,38 @@ TEST_F(RefractionContractGlTest, RefusesSurroundingsOfTheWrongKind) {
     EXPECT_TRUE(environment.loadEquirectangular(pyramid.id()));
 }
 
+/// Lengths whose squares are beyond floats.
+TEST_F(RefractionContractGlTest, NormalsOfAnyLengthShowTheSame) {
+    const Ball ball{{0, 0, 0}, 1.0};
+    auto buffers = MeshBuffers::upload(device(), ref::makeIcosphere({0, 0, 0}, 1.0f, 3)).value();
+    const GeometrySource source = buffers.view();
+    const GBuffer drawn = draw({&ball, 1});
+    const std::vector<glm::vec4> unit = read(drawn.normals.id());
+    const Environment environment = environmentOf(
+        [](const glm::vec3& d) { return 0.5f + 0.5f * glm::normalize(d); }, {.size = 8});
+    Material glass;
+    glass.refractiveIndex = 1.5f;
+    for (const RefractionModel model : kRefractionModels) {
+        Refraction refraction = create(model, environment);
+        ASSERT_TRUE(refraction.prepare({{&source, 1}, {&glass, 1}, {glm::dvec3(-1), glm::dvec3(1)}},
+                                       mView));
+        const auto expected = read(refraction.apply(receiverOf(drawn)).value());
+        for (const float length : {1e-30f, 1e-25f, 1e25f, 1e30f}) {
+            std::vector<glm::vec4> normals;
+            for (const glm::vec4& normal : unit)
+                normals.push_back(normal * length);
+            const gl::Texture scaled = texture(GL_RGBA32F, GL_RGBA, GL_FLOAT, normals);
+            RefractionReceiver receiver = receiverOf(drawn);
+            receiver.normalTexture = scaled.id();
+            const auto pixels = read(refraction.apply(receiver).value());
+            std::size_t apart = 0;
+            for (std::size_t i = 0; i < pixels.size(); ++i)
+                apart += glm::distance(pixels[i], expected[i]) < 0.01f ? 0 : 1;
+            EXPECT_LE(apart, pixels.size() / 500) << length << ' ' << static_cast<int>(model);
+        }
+    }
+}
+
 /// What cannot be prepared says so; the next object can.
 TEST_F(RefractionContractGlTest, RefusesObjectsAndGoesOn) {
     const Ball ball{{0, 0, 0}, 1.0};
