@@ -3,6 +3,7 @@
 #include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
+#include "refraction/check_enumeration.hpp"
 #include "refraction/receiver_textures.hpp"
 #include "refraction/seamless_cube_maps.hpp"
 
@@ -86,6 +87,10 @@ Environment& Environment::operator=(Environment&&) noexcept = default;
 Environment::~Environment() = default;
 
 Result<Environment> Environment::create(const Device& device, const EnvironmentDesc& desc) {
+    if (auto known = checkEnumeration(kOperation, "EnvironmentFilter", desc.filter,
+                                      EnvironmentFilter::Gaussian);
+        !known)
+        return known.error();
     if (!std::has_single_bit(desc.size))
         return Error{ErrorCode::InvalidArgument,
                      "environment: expected a power of two of texels a side, found " +

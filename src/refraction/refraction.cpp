@@ -4,6 +4,7 @@
 #include "gl/fetch_sampler.hpp"
 #include "gl/screen_pass.hpp"
 #include "gl/view_constants.hpp"
+#include "refraction/check_enumeration.hpp"
 #include "refraction/optical_volume.hpp"
 #include "refraction/receiver_textures.hpp"
 #include "refraction/refraction_constants.hpp"
@@ -180,6 +181,10 @@ Refraction& Refraction::operator=(Refraction&&) noexcept = default;
 Refraction::~Refraction() = default;
 
 Result<Refraction> Refraction::create(const Device& device, const RefractionDesc& desc) {
+    if (auto known = checkEnumeration(kOperation, "RefractionModel", desc.model,
+                                      RefractionModel::ManySurfaces);
+        !known)
+        return known.error();
     if (desc.voxels < kLeastVoxels || desc.voxels > kMostVoxels)
         return invalid("expected 8 to 1024 voxels a side, found " + std::to_string(desc.voxels));
     const gl::DebugGroup group(*device.state(), "lamina: create refraction");

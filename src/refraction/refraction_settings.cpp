@@ -1,5 +1,7 @@
 #include "refraction/refraction_settings.hpp"
 
+#include "refraction/check_enumeration.hpp"
+
 #include <cmath>
 #include <limits>
 #include <string>
@@ -48,6 +50,10 @@ Result<void> checkSettings(const RefractionSettings& settings) {
                                                          std::to_string(range.low) + upTo +
                                                          ", found " + std::to_string(range.value)};
         }
+    if (auto known = checkEnumeration("refraction", "AttenuationModel", settings.attenuation,
+                                      AttenuationModel::Power);
+        !known)
+        return known;
     if (settings.maxEvents < 1 || settings.maxEvents > kMostEvents)
         return Error{ErrorCode::InvalidArgument, "refraction: expected 1 to 64 events, found " +
                                                      std::to_string(settings.maxEvents)};

@@ -3,6 +3,7 @@
 #include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/screen_pass.hpp"
+#include "refraction/check_enumeration.hpp"
 #include "refraction/evaluation_table.hpp"
 #include "refraction/refraction_constants.hpp"
 #include "refraction/view_grid.hpp"
@@ -164,6 +165,10 @@ ThicknessMap& ThicknessMap::operator=(ThicknessMap&&) noexcept = default;
 ThicknessMap::~ThicknessMap() = default;
 
 Result<ThicknessMap> ThicknessMap::create(const Device& device, const ThicknessDesc& desc) {
+    if (auto known =
+            checkEnumeration(kOperation, "IntegralMethod", desc.method, IntegralMethod::Table);
+        !known)
+        return known.error();
     if (desc.slices < 1 || desc.slices > kMaxSlices)
         return Error{ErrorCode::InvalidArgument,
                      "thickness: expected 1 to 1024 slices, found " + std::to_string(desc.slices)};

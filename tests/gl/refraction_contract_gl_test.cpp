@@ -116,6 +116,25 @@ TEST_F(RefractionContractGlTest, RefusesSurroundingsOfTheWrongKind) {
     EXPECT_TRUE(environment.loadEquirectangular(pyramid.id()));
 }
 
+TEST_F(RefractionContractGlTest, RefusesValuesOutsideTheirEnumerations) {
+    const auto refused = [](const auto& result, const std::string& text) {
+        ASSERT_FALSE(result) << text;
+        EXPECT_EQ(result.error().code, ErrorCode::InvalidArgument);
+        EXPECT_NE(result.error().text.find(text), std::string::npos) << result.error().text;
+    };
+    RefractionDesc desc;
+    desc.model = static_cast<RefractionModel>(9);
+    refused(Refraction::create(device(), desc), "a value of RefractionModel, found 9");
+    refused(ThicknessMap::create(device(), {.method = static_cast<IntegralMethod>(7)}),
+            "a value of IntegralMethod, found 7");
+    refused(Environment::create(device(), {.filter = static_cast<EnvironmentFilter>(9)}),
+            "a value of EnvironmentFilter, found 9");
+    auto refraction = Refraction::create(device()).value();
+    RefractionSettings settings;
+    settings.attenuation = static_cast<AttenuationModel>(5);
+    refused(refraction.setSettings(settings), "a value of AttenuationModel, found 5");
+}
+
 /// Lengths whose squares are beyond floats.
 TEST_F(RefractionContractGlTest, NormalsOfAnyLengthShowTheSame) {
     const Ball ball{{0, 0, 0}, 1.0};
