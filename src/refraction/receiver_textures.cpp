@@ -88,7 +88,7 @@ Result<void> checkTexture(const std::shared_ptr<gl::DeviceState>& device, GLuint
     const GladGLContext& gl = device->gl;
     const auto invalid = [&](const std::string& found) {
         return Error{ErrorCode::InvalidArgument,
-                     "refraction: expected a " + std::string(what) + " texture, 2D, of " +
+                     "refraction: expected " + std::string(what) + " texture, 2D, of " +
                          size(pixels) + " pixels and " + nameOf(content) + ", found " + found};
     };
     if (const std::string found = notOfTarget(gl, texture, GL_TEXTURE_2D); !found.empty())
@@ -147,10 +147,10 @@ Result<void> checkReceiverTextures(const std::shared_ptr<gl::DeviceState>& devic
         Content content;
         bool isNeeded;
     };
-    const Part parts[] = {{receiver.normalTexture, "normal", Content::Colors, true},
-                          {receiver.objectTexture, "object", Content::Numbers, false},
-                          {receiver.colorTexture, "colour", Content::Colors, false},
-                          {target, "target", Content::Target, true}};
+    const Part parts[] = {{receiver.normalTexture, "a normal", Content::Colors, true},
+                          {receiver.objectTexture, "an object", Content::Numbers, false},
+                          {receiver.colorTexture, "a colour", Content::Colors, false},
+                          {target, "a target", Content::Target, true}};
     for (const Part& part : parts)
         if (part.isNeeded || part.texture != 0)
             if (auto fits = checkTexture(device, part.texture, pixels, part.what, part.content);

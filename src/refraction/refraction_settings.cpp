@@ -5,11 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
 
 namespace lamina {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Of values that are above 0.
+constexpr float kLeast = std::numeric_limits<float>::min();
 constexpr float kRightAngle = 1.5707964f;
 constexpr std::uint32_t kMostEvents = 64;
 
@@ -19,10 +22,23 @@ struct Range {
     float low, high; ///< Inclusive; infinite: any finite value.
 };
 
+/// "a reflection of 0.000000 to 1.000000", "a finite exponent above 0"
+std::string describe(const Range& range) {
+    const bool isBounded = std::isfinite(range.high);
+    const bool isVowel = std::string_view("aeo").find(range.what[0]) != std::string_view::npos;
+    const std::string what = (!isBounded ? "a finite "
+                              : isVowel  ? "an "
+                                         : "a ") +
+                             std::string(range.what);
+    const std::string high = std::to_string(range.high);
+    if (range.low == kLeast)
+        return what + " above 0" + (isBounded ? ", at most " + high : "");
+    return what + " of " + std::to_string(range.low) + (isBounded ? " to " + high : " or more");
+}
+
 } // namespace
 
 Result<void> checkSettings(const RefractionSettings& settings) {
-    constexpr float kLeast = std::numeric_limits<float>::min();
     const Range ranges[] = {
         {"refractive index", settings.refractiveIndex, 1.0f, kGreatestIndex},
         {"reflection", settings.reflection, 0.0f, 1.0f},
@@ -43,11 +59,7 @@ Result<void> checkSettings(const RefractionSettings& settings) {
     for (const Range& range : ranges)
         if (!(range.value >= range.low && range.value <= range.high) ||
             !std::isfinite(range.value)) {
-            const std::string upTo =
-                std::isfinite(range.high) ? " to " + std::to_string(range.high) : " or more";
-            return Error{ErrorCode::InvalidArgument, "refraction: expected a " +
-                                                         std::string(range.what) + " of " +
-                                                         std::to_string(range.low) + upTo +
+            return Error{ErrorCode::InvalidArgument, "refraction: expected " + describe(range) +
                                                          ", found " + std::to_string(range.value)};
         }
     if (auto known = checkEnumeration("refraction", "AttenuationModel", settings.attenuation,

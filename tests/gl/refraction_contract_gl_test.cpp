@@ -44,7 +44,7 @@ TEST_F(RefractionContractGlTest, RefusesTexturesOfTheWrongKind) {
     refused([&](Receiver& r, GLuint&) { r.depthTexture = integers.id(); }, "depths");
     refused([&](Receiver& r, GLuint&) { r.depthTexture = small.id(); }, "8 x 8");
     refused([&](Receiver& r, GLuint&) { r.normalTexture = integers.id(); }, "normal texture");
-    refused([&](Receiver& r, GLuint&) { r.objectTexture = floats.id(); }, "unsigned integers");
+    refused([&](Receiver& r, GLuint&) { r.objectTexture = floats.id(); }, "an object texture");
     refused([&](Receiver& r, GLuint&) { r.colorTexture = integers.id(); }, "colour texture");
     refused([&](Receiver& r, GLuint&) { r.colorTexture = small.id(); }, "8 x 8");
     refused(
@@ -133,6 +133,30 @@ TEST_F(RefractionContractGlTest, RefusesValuesOutsideTheirEnumerations) {
     RefractionSettings settings;
     settings.attenuation = static_cast<AttenuationModel>(5);
     refused(refraction.setSettings(settings), "a value of AttenuationModel, found 5");
+}
+
+/// In words that do not allow what they refuse.
+TEST_F(RefractionContractGlTest, NamesSettingsOutOfRange) {
+    auto refraction = Refraction::create(device()).value();
+    const auto textOf = [&](auto&& change) {
+        RefractionSettings settings;
+        change(settings);
+        const auto set = refraction.setSettings(settings);
+        return set ? std::string("accepted") : set.error().text;
+    };
+    const float infinity = std::numeric_limits<float>::infinity();
+    using Settings = RefractionSettings;
+    EXPECT_EQ(textOf([](Settings& s) { s.exponent = 0.0f; }),
+              "refraction: expected a finite exponent above 0, found 0.000000");
+    EXPECT_EQ(textOf([](Settings& s) { s.opaqueLength = 0.0f; }),
+              "refraction: expected a finite opaque length above 0, found 0.000000");
+    EXPECT_EQ(textOf([&](Settings& s) { s.absorption.x = infinity; }),
+              "refraction: expected a finite absorption of 0.000000 or more, found inf");
+    EXPECT_EQ(textOf([](Settings& s) { s.sameSurfaceAngle = 0.0f; }),
+              "refraction: expected an angle of the same surface above 0, at most 1.570796, found "
+              "0.000000");
+    EXPECT_EQ(textOf([](Settings& s) { s.reflection = 2.0f; }),
+              "refraction: expected a reflection of 0.000000 to 1.000000, found 2.000000");
 }
 
 /// Lengths whose squares are beyond floats.

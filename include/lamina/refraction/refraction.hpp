@@ -63,7 +63,7 @@ struct RefractionSettings {
     float bendLength = 0.0f;
     AttenuationModel attenuation = AttenuationModel::BeerLambert;
     glm::vec3 absorption{0.0f}; ///< BeerLambert: of red, green, blue per world unit, >= 0.
-    glm::vec3 bodyColor{1.0f};  ///< Power: linear colour.
+    glm::vec3 bodyColor{1.0f};  ///< Power: linear colour, >= 0.
     float opaqueLength = 1.0f;  ///< Power: world units, > 0.
     float exponent = 1.0f;      ///< Power: > 0.
     /// Standard deviation, in radians, by which the surface blurs what is seen through or in it
@@ -82,7 +82,10 @@ struct RefractionSettings {
 
 /// What refracts in a frame. Borrowed for the call.
 struct RefractionObject {
-    std::span<const GeometrySource> sources; ///< Closed surfaces.
+    /// Closed surfaces. What is outside: VolumeIntegral goes by the triangles, which turn
+    /// counter-clockwise in world space as seen from there; TwoSurfaces and ManySurfaces by the
+    /// vertex normals, which point there, or by the triangles where there are none.
+    std::span<const GeometrySource> sources;
     /// TwoSurfaces, ManySurfaces: by material id: refractiveIndex, 1 to 4, and transmission times
     /// color is the share of light left after one world unit inside. A material begins at the front
     /// of a surface and ends at its back; surfaces within others hold other materials. None: the

@@ -66,9 +66,12 @@ public:
     ThicknessMap& operator=(ThicknessMap&&) noexcept;
     ~ThicknessMap();
 
-    /// Measures the object that all `sources` make together. Does not wait for the GPU.
+    /// Measures the object that all `sources` make together. Triangles turn counter-clockwise in
+    /// world space as seen from outside; vertex normals do not matter. Does not wait for the GPU.
     /// bounds: a world box that holds the sources; what sticks out may be missed.
-    /// Errors: InvalidArgument (a view whose projection is oblique or skewed, or not invertible,
+    /// Errors: InvalidArgument (a view that is not invertible, whose window's axes are not at right
+    /// angles, or, orthographic, whose rays do not meet the window at right angles: off-centre
+    /// windows and oblique near planes are fine;
     /// empty or non-finite bounds, sources as Voxelizer::voxelize() says), DeviceLimit,
     /// OutOfMemory, ShaderError; the map is then undefined and must be built again. GL: as
     /// Voxelizer::voxelize(); the texture may be sampled at once, no barrier needed. Cost: two
