@@ -17,6 +17,9 @@ struct DepthSpriteData {
     gl::Buffer report; ///< shared::LaminaSpriteReport
     std::uint32_t layers = 0;
     std::optional<GridTransform> transform;
+    /// Ends when columns, layers or transform change, and with the sprite: sets that hold it weakly
+    /// see that what they know of the sprite no longer holds.
+    std::shared_ptr<const char> placement;
 
     /// A texture for that many columns and layers, or nothing if the present one has them.
     /// Errors: DeviceLimit, OutOfMemory.

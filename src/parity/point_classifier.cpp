@@ -208,6 +208,10 @@ Result<void> PointClassifier::classify(const SpriteSet& sprites, const PointBuff
                                        std::uint64_t answerOffset) {
     if (points.count == 0)
         return {};
+    if (const auto outdated = sprites.outdatedSprite())
+        return invalid("the sprites that the set was given, found that sprite " +
+                       std::to_string(*outdated) +
+                       " was rebuilt or destroyed; call SpriteSet::update()");
     if (auto divides = checkDirections(sprites, query); !divides)
         return divides;
     auto valid =

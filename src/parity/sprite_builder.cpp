@@ -239,6 +239,8 @@ Result<SpriteStats> SpriteBuilder::Impl::build(Sources sources, const GridTransf
         return texture.error();
     if (*texture)
         sprite.texture = std::move(*texture);
+    if (!sprite.placement || sprite.layers != layers || sprite.transform != transform)
+        sprite.placement = std::make_shared<const char>();
     sprite.transform = transform;
     sprite.layers = layers;
 

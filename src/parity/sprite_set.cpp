@@ -1,4 +1,5 @@
 #include "gl/device_state.hpp"
+#include "parity/depth_sprite_data.hpp"
 #include "parity/parity_constants.hpp"
 
 #include <lamina/parity/sprite_set.hpp>
@@ -57,6 +58,7 @@ struct SpriteSet::Impl {
     std::shared_ptr<gl::DeviceState> device;
     gl::Buffer uniforms;
     std::vector<GLuint> textures;
+    std::vector<std::weak_ptr<const char>> placements; ///< Of the textures.
     std::uint32_t maxTextures = 0;
 };
 
@@ -95,6 +97,7 @@ Result<void> SpriteSet::update(std::span<const SpriteInstance> sprites) {
                          std::to_string(sprites.size()) + "; test the others in another pass"};
     shared::ParityBlock block{};
     std::vector<GLuint> textures;
+    std::vector<std::weak_ptr<const char>> placements;
     for (std::size_t i = 0; i < sprites.size(); ++i) {
         const SpriteInstance& instance = sprites[i];
         const std::string operation = "sprite set: sprite " + std::to_string(i) + ": ";
@@ -108,9 +111,11 @@ Result<void> SpriteSet::update(std::span<const SpriteInstance> sprites) {
                                      "another matrix"};
         block.sprites[i] = constantsOf(instance);
         textures.push_back(instance.sprite->texture());
+        placements.emplace_back(instance.sprite->data().placement);
     }
     block.count.x = static_cast<std::uint32_t>(sprites.size());
     mImpl->textures = std::move(textures);
+    mImpl->placements = std::move(placements);
     mImpl->device->gl.NamedBufferSubData(mImpl->uniforms.id(), 0, sizeof block, &block);
     return {};
 }
@@ -121,9 +126,16 @@ void SpriteSet::bind(std::uint32_t uniformBufferBinding, std::uint32_t textureUn
     gl.BindBuffersBase(GL_UNIFORM_BUFFER, uniformBufferBinding, 1, &buffer);
     for (std::size_t i = 0; i < mImpl->textures.size(); ++i) {
         const auto unit = static_cast<GLuint>(textureUnit + i);
-        gl.BindTextureUnit(unit, mImpl->textures[i]);
+        gl.BindTextureUnit(unit, mImpl->placements[i].expired() ? 0 : mImpl->textures[i]);
         gl.BindSampler(unit, 0);
     }
+}
+
+std::optional<std::uint32_t> SpriteSet::outdatedSprite() const {
+    for (std::size_t i = 0; i < mImpl->placements.size(); ++i)
+        if (mImpl->placements[i].expired())
+            return static_cast<std::uint32_t>(i);
+    return std::nullopt;
 }
 
 std::uint32_t SpriteSet::size() const {

@@ -12,6 +12,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <limits>
+#include <memory>
+#include <optional>
 
 namespace lamina {
 namespace {
@@ -187,6 +189,54 @@ TEST_F(ParityQueryGlTest, ThirtyTwoSpritesAnswerTogether) {
     // A set without sprites contains nothing.
     ASSERT_TRUE(set.update({}));
     EXPECT_EQ(masks(set, points), std::vector<std::uint32_t>(points.size()));
+}
+
+TEST_F(ParityQueryGlTest, SetsSeeThatASpriteWasRebuiltOrDestroyed) {
+    const TriangleMesh box = ref::makeBox({-1, -1, -1}, {1, 1, 1});
+    const auto transform = fitSprite(box.bounds(), {0, 0, 1}, 32).value();
+    auto sprite = std::make_unique<BuiltSprite>(device(), box, transform);
+    const GeometrySource source = sprite->buffers.view();
+    auto builder = SpriteBuilder::create(device()).value();
+    auto classifier = PointClassifier::create(device()).value();
+    auto set = SpriteSet::create(device()).value();
+    const std::vector<glm::vec3> points = {{0, 0, 0}};
+    const auto update = [&] {
+        const SpriteInstance instances[] = {{.sprite = &sprite->sprite}};
+        ASSERT_TRUE(set.update(instances));
+        EXPECT_EQ(set.outdatedSprite(), std::nullopt);
+        EXPECT_EQ(classifier.download(set, points).value()[0], 1);
+    };
+    const auto expectOutdated = [&] {
+        EXPECT_EQ(set.outdatedSprite(), 0u);
+        const auto stale = classifier.download(set, points);
+        ASSERT_FALSE(stale);
+        EXPECT_EQ(stale.error().code, ErrorCode::InvalidArgument);
+        EXPECT_THAT(stale.error().text,
+                    HasSubstr("sprite 0 was rebuilt or destroyed; call SpriteSet::update()"));
+        set.bind();
+        EXPECT_EQ(gl().GetError(), static_cast<GLenum>(GL_NO_ERROR));
+    };
+    const auto rebuild = [&](const GridTransform& other, std::uint32_t layers) {
+        EXPECT_TRUE(builder.build({&source, 1}, other, layers, sprite->sprite));
+    };
+    update();
+    // The same columns, layers and transform, as in every frame of a shape that moves.
+    rebuild(transform, 2);
+    EXPECT_EQ(set.outdatedSprite(), std::nullopt);
+    rebuild(transform, 8);
+    expectOutdated();
+    update();
+    rebuild(fitSprite(box.bounds(), {0, 0, 1}, 64).value(), 8);
+    expectOutdated();
+    update();
+    rebuild(fitSprite(box.bounds(), {1, 0, 0}, 64).value(), 8);
+    expectOutdated();
+    update();
+    DepthSprite moved = std::move(sprite->sprite);
+    EXPECT_EQ(set.outdatedSprite(), std::nullopt) << "it only changed its owner";
+    moved = DepthSprite::create(device()).value();
+    expectOutdated();
+    EXPECT_TRUE(classifier.download(set, {}).value().empty());
 }
 
 TEST_F(ParityQueryGlTest, PointsWithoutAPlaceAreOutside) {

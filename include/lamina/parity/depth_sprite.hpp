@@ -65,6 +65,7 @@ public:
 
     /// For Lamina's own modules; not part of the stable API.
     [[nodiscard]] detail::DepthSpriteData& data() { return *mData; }
+    [[nodiscard]] const detail::DepthSpriteData& data() const { return *mData; }
 
 private:
     explicit DepthSprite(std::unique_ptr<detail::DepthSpriteData> data);

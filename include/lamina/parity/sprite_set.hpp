@@ -9,13 +9,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace lamina {
 
 /// A sprite and its place in the world.
 struct SpriteInstance {
-    const DepthSprite* sprite = nullptr; ///< Built; must outlive the set's use.
+    const DepthSprite* sprite = nullptr; ///< Built; the set does not keep the pointer.
     /// From the space that the sprite was built in to the world: rigid shapes move without being
     /// built again ([TD08] 3.1: position and orientation). Affine, not singular. One sprite may
     /// stand in several places.
@@ -36,7 +37,9 @@ public:
     SpriteSet& operator=(SpriteSet&&) noexcept;
     ~SpriteSet();
 
-    /// Sprite s of the shader is sprites[s]. Call it again after a sprite was built or moved.
+    /// Sprite s of the shader is sprites[s]. Call it again after a sprite was built with other
+    /// columns, layers or another transform, and after its place in the world changed; see
+    /// outdatedSprite().
     /// Errors: InvalidArgument (more than 32, a sprite that is null or not built, a matrix that is
     /// singular or not affine), DeviceLimit (more sprites than a shader stage has texture units);
     /// the set is then unchanged. Does not wait for the GPU.
@@ -44,9 +47,13 @@ public:
 
     /// Binds the uniform buffer to LAMINA_PARITY_BLOCK_BINDING and the textures, without sampler
     /// objects, to units from LAMINA_PARITY_TEXTURE_UNIT on, of a shader whose LAMINA_PARITY_COUNT
-    /// is at least size(). GL: changes these bindings; the caller restores them if need be.
+    /// is at least size(). The unit of a sprite that is outdated gets no texture: what shaders say
+    /// of it means nothing. GL: changes these bindings; the caller restores them if need be.
     void bind(std::uint32_t uniformBufferBinding = 0, std::uint32_t textureUnit = 0) const;
 
+    /// The first sprite that, since update(), was built with other columns, layers or another
+    /// transform, or destroyed; nothing if the set still holds for all.
+    [[nodiscard]] std::optional<std::uint32_t> outdatedSprite() const;
     [[nodiscard]] std::uint32_t size() const;
     /// Bytes of GL memory held, without the sprites.
     [[nodiscard]] std::uint64_t gpuBytes() const;
