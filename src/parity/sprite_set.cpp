@@ -4,11 +4,14 @@
 
 #include <lamina/parity/sprite_set.hpp>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +38,28 @@ glm::dmat4 worldToSprite(const GridTransform& transform, const glm::dmat4& local
     return toFraction * transform.worldToColumn() * glm::inverse(localToWorld);
 }
 
-shared::LaminaSpriteConstants constantsOf(const SpriteInstance& instance) {
+/// Do single-precision numbers hold the map that the constants have: in range, and with the
+/// determinant of `linear`, the map in double precision?
+bool fitsFloats(const shared::LaminaSpriteConstants& constants, const glm::dmat3& linear) {
+    glm::dmat3 rows(0.0);
+    for (int row = 0; row < 3; ++row) {
+        const glm::vec4& found = constants.worldToSprite[row];
+        for (int column = 0; column < 4; ++column)
+            if (!std::isfinite(found[column]))
+                return false;
+        rows[row] = glm::dvec3(found);
+        const glm::vec3 most = glm::abs(glm::vec3(found));
+        if (!std::isnormal(std::max({most.x, most.y, most.z})))
+            return false;
+    }
+    const double exact = glm::determinant(linear);
+    const double rounded = glm::determinant(rows);
+    return std::isnormal(constants.scale.x) && std::isnormal(constants.scale.y) &&
+           std::isnormal(rounded) && std::abs(rounded - exact) <= 0.5 * std::abs(exact);
+}
+
+/// Nothing where single-precision numbers do not hold them.
+std::optional<shared::LaminaSpriteConstants> constantsOf(const SpriteInstance& instance) {
     const GridTransform& transform = *instance.sprite->transform();
     const glm::dmat4 map = worldToSprite(transform, instance.localToWorld);
     const glm::dmat4 rows = glm::transpose(map);
@@ -49,6 +73,8 @@ shared::LaminaSpriteConstants constantsOf(const SpriteInstance& instance) {
     constants.scale = {range, diagonal / range, 0.0f, 0.0f};
     constants.size = {transform.size().x, transform.size().y, instance.sprite->layers(),
                       instance.inverted ? LAMINA_PARITY_INVERTED : 0u};
+    if (!fitsFloats(constants, glm::dmat3(map)))
+        return std::nullopt;
     return constants;
 }
 
@@ -109,7 +135,13 @@ Result<void> SpriteSet::update(std::span<const SpriteInstance> sprites) {
             return Error{ErrorCode::InvalidArgument,
                          operation + "expected a finite, affine and invertible localToWorld, found "
                                      "another matrix"};
-        block.sprites[i] = constantsOf(instance);
+        const auto constants = constantsOf(instance);
+        if (!constants)
+            return Error{ErrorCode::InvalidArgument,
+                         operation + "expected a localToWorld whose inverse single-precision "
+                                     "numbers hold, found one too large, too small or too flat; "
+                                     "use other units"};
+        block.sprites[i] = *constants;
         textures.push_back(instance.sprite->texture());
         placements.emplace_back(instance.sprite->data().placement);
     }

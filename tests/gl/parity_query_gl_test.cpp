@@ -186,6 +186,32 @@ TEST_F(ParityQueryGlTest, ThirtyTwoSpritesAnswerTogether) {
         {.sprite = &built.sprite,
          .localToWorld = glm::scale(glm::dmat4(1.0), glm::dvec3(1, 1, 0))}};
     EXPECT_THAT(set.update(flat).error().text, HasSubstr("invertible localToWorld"));
+    // Scales that double precision has and shaders have not.
+    for (const glm::dvec3& scale : {glm::dvec3(1e-60), glm::dvec3(1e-45), glm::dvec3(1e60),
+                                    glm::dvec3(1e42), glm::dvec3(1, 1e-44, 1)}) {
+        const SpriteInstance extreme[] = {
+            {.sprite = &built.sprite, .localToWorld = glm::scale(glm::dmat4(1.0), scale)}};
+        const auto refused = set.update(extreme);
+        ASSERT_FALSE(refused) << scale.y;
+        EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
+        EXPECT_THAT(refused.error().text,
+                    HasSubstr("localToWorld whose inverse single-precision numbers hold"));
+    }
+    // Flat in single precision only: rows that its digits do not tell apart.
+    glm::dmat4 worldToLocal(1.0);
+    worldToLocal[0] = {1.0, 1.0, 0.0, 0.0};
+    worldToLocal[1] = {1.0, 1.0 + 1e-9, 0.0, 0.0};
+    const SpriteInstance sheared[] = {
+        {.sprite = &built.sprite, .localToWorld = glm::inverse(worldToLocal)}};
+    EXPECT_FALSE(set.update(sheared));
+    for (const double scale : {1e-30, 1e-6, 1e30}) {
+        const SpriteInstance fine[] = {
+            {.sprite = &built.sprite,
+             .localToWorld =
+                 glm::rotate(glm::scale(glm::dmat4(1.0), glm::dvec3(-scale, scale, scale)), 0.3,
+                             glm::dvec3(1, 2, 3))}};
+        EXPECT_TRUE(set.update(fine)) << scale;
+    }
     // A set without sprites contains nothing.
     ASSERT_TRUE(set.update({}));
     EXPECT_EQ(masks(set, points), std::vector<std::uint32_t>(points.size()));

@@ -18,8 +18,8 @@ namespace lamina {
 struct SpriteInstance {
     const DepthSprite* sprite = nullptr; ///< Built; the set does not keep the pointer.
     /// From the space that the sprite was built in to the world: rigid shapes move without being
-    /// built again ([TD08] 3.1: position and orientation). Affine, not singular. One sprite may
-    /// stand in several places.
+    /// built again ([TD08] 3.1: position and orientation). Affine, not singular, also in the single
+    /// precision that shaders have: no scale by 1e-40, say. One sprite may stand in several places.
     glm::dmat4 localToWorld{1.0};
     bool inverted = false; ///< What lies outside the shape counts as inside.
 };
@@ -41,8 +41,8 @@ public:
     /// columns, layers or another transform, and after its place in the world changed; see
     /// outdatedSprite().
     /// Errors: InvalidArgument (more than 32, a sprite that is null or not built, a matrix that is
-    /// singular or not affine), DeviceLimit (more sprites than a shader stage has texture units);
-    /// the set is then unchanged. Does not wait for the GPU.
+    /// singular, in single precision too, or not affine), DeviceLimit (more sprites than a shader
+    /// stage has texture units); the set is then unchanged. Does not wait for the GPU.
     [[nodiscard]] Result<void> update(std::span<const SpriteInstance> sprites);
 
     /// Binds the uniform buffer to LAMINA_PARITY_BLOCK_BINDING and the textures, without sampler
