@@ -2,6 +2,7 @@
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
 #include "parity/parity_constants.hpp"
+#include "parity/parity_errors.hpp"
 
 #include <lamina/parity/point_classifier.hpp>
 
@@ -12,6 +13,7 @@
 namespace lamina {
 namespace {
 
+constexpr const char* kOperation = "point classification";
 constexpr std::uint64_t kPointBytes = sizeof(glm::vec3);
 /// A batch ends between two words of every kind of answer.
 constexpr std::uint64_t kBatchStep = 32;
@@ -60,6 +62,20 @@ GLuint ruleNumber(SpriteRule rule) {
 
 Error invalid(const std::string& text) {
     return {ErrorCode::InvalidArgument, "point classification: expected " + text};
+}
+
+/// An error of an allocation, with the advice for points.
+Error ownError(const Error& error) {
+    return detail::inWordsOf(kOperation, "use fewer points", error);
+}
+
+/// Are all values those of their enumerations?
+Result<void> checkValues(const PointQuery& query) {
+    if (auto valid =
+            detail::checkValue(kOperation, "PointAnswer", query.answer, PointAnswer::Masks);
+        !valid)
+        return valid;
+    return detail::checkValue(kOperation, "SpriteRule", query.rule, SpriteRule::Difference);
 }
 
 Result<void> checkDirections(const SpriteSet& sprites, const PointQuery& query) {
@@ -206,6 +222,8 @@ std::uint64_t PointClassifier::answerBytes(PointAnswer answer, std::uint64_t cou
 Result<void> PointClassifier::classify(const SpriteSet& sprites, const PointBuffer& points,
                                        const PointQuery& query, std::uint32_t answers,
                                        std::uint64_t answerOffset) {
+    if (auto valid = checkValues(query); !valid)
+        return valid;
     if (points.count == 0)
         return {};
     if (const auto outdated = sprites.outdatedSprite())
@@ -238,18 +256,19 @@ Result<void> PointClassifier::classify(const SpriteSet& sprites, const PointBuff
 Result<std::vector<std::uint8_t>> PointClassifier::download(const SpriteSet& sprites,
                                                             std::span<const glm::vec3> points,
                                                             const PointQuery& query) {
+    if (auto valid = checkValues(query); !valid)
+        return valid.error();
     std::vector<std::uint8_t> answers(answerBytes(query.answer, points.size()));
     if (points.empty())
         return answers;
-    constexpr const char* kOperation = "point classification";
     auto input = gl::createBuffer(mImpl->device, points.size_bytes(), points.data(), 0, kOperation,
                                   "lamina points");
     if (!input)
-        return input.error();
+        return ownError(input.error());
     auto output = gl::createBuffer(mImpl->device, answers.size(), nullptr, 0, kOperation,
                                    "lamina point answers");
     if (!output)
-        return output.error();
+        return ownError(output.error());
     PointBuffer buffer;
     buffer.buffer = input->id();
     buffer.count = points.size();

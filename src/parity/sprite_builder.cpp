@@ -4,6 +4,7 @@
 #include "gl/state_guard.hpp"
 #include "parity/depth_sprite_data.hpp"
 #include "parity/parity_constants.hpp"
+#include "parity/parity_errors.hpp"
 #include "voxelize/slicemap_draw.hpp"
 
 #include <lamina/parity/sprite_builder.hpp>
@@ -39,6 +40,15 @@ SlicemapStage layerStage(SpriteMethod method) {
                                                  : "LAMINA_PARITY_PASS_GATHER");
 }
 
+/// An error of what the builder uses, in its words.
+Error ownError(const Error& error) {
+    return detail::inWordsOf("depth sprite", "use fewer columns", error);
+}
+
+Result<void> checkMethod(SpriteMethod method) {
+    return detail::checkValue("depth sprite", "SpriteMethod", method, SpriteMethod::Peeling);
+}
+
 std::uint32_t evenLayers(std::uint32_t layers) {
     constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
     return layers > kMost ? kMost : std::max(layers + (layers & 1u), 2u);
@@ -57,6 +67,7 @@ struct SpriteBuilder::Impl {
         , peelBlocks(gl::Buffer::create(device, "lamina peel constants")) {}
 
     [[nodiscard]] Result<void> check(const GridTransform& transform) const;
+    [[nodiscard]] Result<void> checkLayers(std::uint32_t layers) const;
     [[nodiscard]] Result<GLuint> resolveProgram(bool layered, bool sorted) const;
     [[nodiscard]] Result<void> reserveCounts(const GridTransform& transform);
     void beginDraws(const GridTransform& transform) const;
@@ -94,6 +105,18 @@ Result<void> SpriteBuilder::Impl::check(const GridTransform& transform) const {
                      "depth sprite: expected at most " + std::to_string(most) + " x " +
                          std::to_string(most) + " columns, found " + std::to_string(size.x) +
                          " x " + std::to_string(size.y) + "; use fewer"};
+    return {};
+}
+
+Result<void> SpriteBuilder::Impl::checkLayers(std::uint32_t layers) const {
+    // One layer more holds the ranges of blocks.
+    const std::uint32_t most = (device->limits.maxArrayTextureLayers - 1) & ~1u;
+    if (layers > most)
+        return Error{ErrorCode::DeviceLimit, "depth sprite: expected at most " +
+                                                 std::to_string(most) + " layers, found " +
+                                                 std::to_string(layers) +
+                                                 " layers; too many crossings, take another "
+                                                 "direction or clip the box"};
     return {};
 }
 
@@ -196,12 +219,12 @@ Result<SpriteReport> SpriteBuilder::Impl::count(Sources sources, const GridTrans
         return valid.error();
     auto prepared = columns.prepare(sources, transform, countStage());
     if (!prepared)
-        return prepared.error();
+        return ownError(prepared.error());
     auto program = resolveProgram(false, false);
     if (!program)
         return program.error();
     if (auto reserved = reserveCounts(transform); !reserved)
-        return reserved.error();
+        return ownError(reserved.error());
     const gl::DebugGroup group(*device, "lamina: count crossings");
     const SlicemapPass pass = allDepths(*prepared);
     columns.upload({&pass, 1}, transform);
@@ -222,21 +245,23 @@ Result<SpriteStats> SpriteBuilder::Impl::build(Sources sources, const GridTransf
                                                SpriteMethod method) {
     if (auto valid = check(transform); !valid)
         return valid.error();
+    if (auto fits = checkLayers(layers); !fits)
+        return fits.error();
     const bool peels = method == SpriteMethod::Peeling;
     auto prepared = columns.prepare(sources, transform, layerStage(method));
     if (!prepared)
-        return prepared.error();
+        return ownError(prepared.error());
     auto counting = columns.prepare(sources, transform, countStage());
     if (!counting)
-        return counting.error();
+        return ownError(counting.error());
     auto program = resolveProgram(true, peels);
     if (!program)
         return program.error();
     if (auto reserved = reserveCounts(transform); !reserved)
-        return reserved.error();
+        return ownError(reserved.error());
     auto texture = sprite.allocate(transform, layers);
     if (!texture)
-        return texture.error();
+        return ownError(texture.error());
     if (*texture)
         sprite.texture = std::move(*texture);
     if (!sprite.placement || sprite.layers != layers || sprite.transform != transform)
@@ -291,6 +316,8 @@ Result<SpriteBuilder> SpriteBuilder::create(const Device& device) {
 Result<SpriteStats> SpriteBuilder::build(std::span<const GeometrySource> sources,
                                          const GridTransform& transform, std::uint32_t layers,
                                          DepthSprite& out, SpriteMethod method) {
+    if (auto valid = checkMethod(method); !valid)
+        return valid.error();
     if (layers == 0)
         return Error{ErrorCode::InvalidArgument,
                      "depth sprite: expected at least 1 layer, found 0; buildAndWait() finds how "
@@ -301,6 +328,8 @@ Result<SpriteStats> SpriteBuilder::build(std::span<const GeometrySource> sources
 Result<SpriteReport> SpriteBuilder::buildAndWait(std::span<const GeometrySource> sources,
                                                  const GridTransform& transform, DepthSprite& out,
                                                  SpriteMethod method) {
+    if (auto valid = checkMethod(method); !valid)
+        return valid.error();
     const auto buildWith = [&](std::uint32_t layers) -> Result<SpriteReport> {
         if (auto built = build(sources, transform, layers, out, method); !built)
             return built.error();

@@ -105,6 +105,15 @@ TEST_F(ParityPointsGlTest, PointsOfTheHostsBuffersAreReadInPlace) {
                 HasSubstr("found 2 directions and 1 sprites"));
     EXPECT_THAT(errorOf(input, 0, {.answer = PointAnswer::Classes, .directions = 1}),
                 HasSubstr("no classes with them"));
+    EXPECT_THAT(errorOf(input, 0, {.answer = static_cast<PointAnswer>(9)}),
+                HasSubstr("expected a value of PointAnswer, found 9"));
+    EXPECT_THAT(errorOf(input, 0, {.rule = static_cast<SpriteRule>(9)}),
+                HasSubstr("expected a value of SpriteRule, found 9"));
+    EXPECT_EQ(classifier.download(set, points, {.rule = static_cast<SpriteRule>(9)}).error().code,
+              ErrorCode::InvalidArgument);
+    device().setMemoryBudget(device().allocatedBytes() + 1000);
+    EXPECT_THAT(classifier.download(set, points).error().text, HasSubstr("use fewer points"));
+    device().setMemoryBudget(0);
     gl().DeleteBuffers(2, buffers);
 }
 

@@ -341,13 +341,31 @@ TEST_F(ParitySpriteGlTest, ErrorsSayWhatIsWrong) {
     const GeometrySource broken = MeshView{};
     const auto failed = builder.build({&broken, 1}, transform, 4, sprite);
     ASSERT_FALSE(failed);
-    EXPECT_THAT(failed.error().text, HasSubstr("source 0: expected vertexBuffer"));
+    EXPECT_THAT(failed.error().text,
+                testing::StartsWith("depth sprite: source 0: expected vertexBuffer"));
     EXPECT_EQ(sprite.transform(), nullptr);
     const auto huge = builder.build({}, transform, 1u << 20u, sprite);
     ASSERT_FALSE(huge);
     EXPECT_EQ(huge.error().code, ErrorCode::DeviceLimit);
-    EXPECT_THAT(huge.error().text, HasSubstr("1048576 layers"));
+    EXPECT_THAT(huge.error().text,
+                HasSubstr("found 1048576 layers; too many crossings, take another direction"));
     EXPECT_EQ(builder.build({}, transform, ~0u, sprite).error().code, ErrorCode::DeviceLimit);
+    DrawSource stage;
+    stage.vertexShader = "nonsense";
+    stage.draw = [](const DrawContext&) {};
+    const GeometrySource nonsense = stage;
+    const auto uncompiled = builder.build({&nonsense, 1}, transform, 4, sprite);
+    ASSERT_FALSE(uncompiled);
+    EXPECT_EQ(uncompiled.error().code, ErrorCode::ShaderError);
+    EXPECT_THAT(uncompiled.error().text,
+                testing::StartsWith("depth sprite: expected the host vertex stage"));
+    EXPECT_FALSE(takeHighSeverityMessages().empty()) << "the compiler's";
+    const auto method = static_cast<SpriteMethod>(7);
+    for (const Error& error : {builder.build({}, transform, 4, sprite, method).error(),
+                               builder.buildAndWait({}, transform, sprite, method).error()}) {
+        EXPECT_EQ(error.code, ErrorCode::InvalidArgument);
+        EXPECT_EQ(error.text, "depth sprite: expected a value of SpriteMethod, found 7");
+    }
     const auto wide = GridTransform::box(kUnitBox, {1u << 20u, 8, 1}).value();
     EXPECT_THAT(builder.build({}, wide, 2, sprite).error().text,
                 HasSubstr("columns, found 1048576"));
@@ -361,6 +379,7 @@ TEST_F(ParitySpriteGlTest, ErrorsSayWhatIsWrong) {
     ASSERT_FALSE(dear);
     EXPECT_EQ(dear.error().code, ErrorCode::OutOfMemory);
     EXPECT_THAT(dear.error().text, HasSubstr("8 layers: needs"));
+    EXPECT_THAT(dear.error().text, HasSubstr("use fewer columns"));
     EXPECT_EQ(sprite.layers(), 2u);
     EXPECT_EQ(device().allocatedBytes(), held);
 }

@@ -66,9 +66,9 @@ public:
     /// past the last point are 0. Does not wait for the GPU.
     /// GL: points written by shaders need GL_SHADER_STORAGE_BARRIER_BIT before the call, and
     /// answers what their reader needs after it.
-    /// Errors: InvalidArgument (SpriteSet::outdatedSprite(); buffers too small, misaligned or none;
-    /// directions that do not divide the set, or with Classes), DeviceLimit (points
-    /// further apart than a storage binding reaches), ShaderError.
+    /// Errors: InvalidArgument (values outside their enumerations, SpriteSet::outdatedSprite();
+    /// buffers too small, misaligned or none; directions that do not divide the set, or with
+    /// Classes), DeviceLimit (points further apart than a storage binding reaches), ShaderError.
     [[nodiscard]] Result<void> classify(const SpriteSet& sprites, const PointBuffer& points,
                                         const PointQuery& query, std::uint32_t answers,
                                         std::uint64_t answerOffset = 0);

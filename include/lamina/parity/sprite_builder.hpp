@@ -57,8 +57,9 @@ public:
     /// the shape needs; does not wait for the GPU. Columns with more crossings become empty, and
     /// DepthSprite::downloadReport() counts them. An empty list of sources gives an empty sprite.
     /// transform: orthographic. GL: `out` may be sampled at once, no barrier needed.
-    /// Errors: InvalidArgument (a perspective transform, no layers, a source that does not fit its
-    /// buffers), DeviceLimit, OutOfMemory, ShaderError (a DrawSource's vertex stage).
+    /// Errors: InvalidArgument (a perspective transform, no layers, no SpriteMethod, a source that
+    /// does not fit its buffers), DeviceLimit, OutOfMemory, ShaderError (a DrawSource's vertex
+    /// stage).
     [[nodiscard]] Result<SpriteStats> build(std::span<const GeometrySource> sources,
                                             const GridTransform& transform, std::uint32_t layers,
                                             DepthSprite& out,
