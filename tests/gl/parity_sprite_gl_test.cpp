@@ -275,6 +275,13 @@ TEST_F(ParitySpriteGlTest, OpenMeshesAreReported) {
     EXPECT_EQ(BuiltSprite(device(), open, GridTransform::box(box, glm::uvec3(8), Axis::X).value())
                   .report.oddColumns,
               0u);
+    // The hole is at z = 6.25. By the closed side the solid lies before the shape.
+    const auto insideAlong = [&](double z, const glm::dvec3& point) {
+        const auto along = fitSprite(open.bounds(), {0, 0, z}, 32).value();
+        return BuiltSprite(device(), open, along).sprite.download()->inside(point);
+    };
+    EXPECT_TRUE(insideAlong(-1, {4, 4, 4})) << "by the hole";
+    EXPECT_FALSE(insideAlong(1, {4, 4, 4})) << "by the closed side";
 }
 
 TEST_F(ParitySpriteGlTest, TooManyLayersEmptyTheColumnAndAreReported) {
@@ -371,7 +378,9 @@ TEST_F(ParitySpriteGlTest, ErrorsSayWhatIsWrong) {
                 HasSubstr("columns, found 1048576"));
 
     // Memory is known before, and a budget is kept.
-    ASSERT_TRUE(builder.build({}, transform, 2, sprite));
+    const auto stats = builder.build({}, transform, 2, sprite);
+    ASSERT_TRUE(stats);
+    EXPECT_EQ(stats->scratchBytes, 4u * transform.size().x * transform.size().y);
     EXPECT_EQ(sprite.gpuBytes(), DepthSprite::bytesFor(transform, 2));
     const std::uint64_t held = device().allocatedBytes();
     device().setMemoryBudget(held + DepthSprite::bytesFor(transform, 6));

@@ -40,7 +40,8 @@ struct PointQuery {
     std::uint32_t directions = 0;
 };
 
-/// Points in a GL buffer of the host: three floats each, world space.
+/// Points in a GL buffer of the host: three floats each, world space. Single precision: keep world
+/// coordinates local, see fitSprite().
 struct PointBuffer {
     std::uint32_t buffer = 0;       ///< GL name.
     std::uint64_t offsetBytes = 0;  ///< Of point 0; a multiple of 4.
@@ -74,7 +75,8 @@ public:
                                         std::uint64_t answerOffset = 0);
 
     /// The same for points in host memory; the first answerBytes() bytes of the answers, little
-    /// end first. Waits for the GPU. Errors: as above, OutOfMemory.
+    /// end first. Waits for the GPU. During the call 12 bytes a point and answerBytes() count
+    /// against DeviceDesc::memoryBudgetBytes. Errors: as above, OutOfMemory.
     [[nodiscard]] Result<std::vector<std::uint8_t>> download(const SpriteSet& sprites,
                                                              std::span<const glm::vec3> points,
                                                              const PointQuery& query = {});

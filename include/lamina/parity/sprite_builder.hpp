@@ -24,8 +24,10 @@ enum class SpriteMethod : std::uint8_t {
 /// What a build did; known without waiting for the GPU.
 struct SpriteStats {
     std::uint32_t geometryPasses = 0;
-    std::uint64_t spriteBytes = 0;  ///< GL memory of the sprite.
-    std::uint64_t scratchBytes = 0; ///< GL memory that the builder keeps for its next build.
+    std::uint64_t spriteBytes = 0; ///< GL memory of the sprite.
+    /// GL memory that the builder keeps for its next build: 4 bytes a column (columns x
+    /// times y of the last transform, counted ones too).
+    std::uint64_t scratchBytes = 0;
 };
 
 /// A direction and what a sprite along it needs.
@@ -39,6 +41,16 @@ struct SpriteDirection {
 /// Which column crosses which triangle is decided by exact edge equations in double precision, as
 /// by a Voxelizer: closed shapes, of any orientation, cross every column evenly, faces parallel to
 /// the axis and coincident faces included. Move-only; see Device for threads and lifetime.
+///
+/// Even is outside: a closed mesh whose faces all stand twice is outside everywhere. An open shape
+/// whose columns enter by its closed side and leave by the hole is odd there
+/// (SpriteReport::oddColumns), and the column is taken to begin at the sprite's near side: the
+/// solid then lies before the shape. Turn the direction round, so that columns enter by the hole:
+/// then the solid lies between the sprite's near side and the closed side.
+///
+/// Memory counts against DeviceDesc::memoryBudgetBytes (Device::setMemoryBudget()): a sprite's
+/// DepthSprite::bytesFor(), and the builder's SpriteStats::scratchBytes and 24 bytes. While
+/// columns or layers change, old and new memory are held together.
 ///
 /// Every call leaves the GL state as it was and, unless it says otherwise, sprites unchanged if it
 /// fails. Writes of the host

@@ -16,6 +16,8 @@ namespace lamina {
 /// `direction`, square in cross-section, with a margin of a column on all sides, so that what lies
 /// in the box reaches no side of the sprite. Any other orthographic GridTransform serves as well:
 /// slices and their distribution only matter to SpriteLayers::voxels().
+/// Shaders place points in single precision: keep shapes and points near the origin of the space
+/// they share, since far from it the seven digits are spent before columns are told apart.
 /// bounds: world (or the shape's own space), not empty; direction: any length, not zero;
 /// resolution: columns along the longer side of the cross-section, at least 4.
 /// Errors: InvalidArgument.
