@@ -182,15 +182,21 @@ int main(int argc, char** argv) {
     CLI::App app("Clips a tower by two shapes.");
     app.add_option("file", settings.file, "The picture, a PNG")->required();
     app.add_option("--rule", settings.rule, "Of the shapes: union, intersection, difference")
+        ->default_str("union")
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, int>{{"union", 0}, {"intersection", 1}, {"difference", 2}}));
     app.add_flag("--keep", settings.keeps, "Keep what is inside, not what is outside");
     app.add_flag("!--open", settings.isCapped, "Leave the cut faces open");
     app.add_flag("!--whole", settings.clips, "Do not clip");
     app.add_option("--columns", settings.columns, "Columns of the sprites")
-        ->check(CLI::Range(4, 8192));
-    app.add_option("--width", settings.width, "Pixels")->check(CLI::Range(16, 4096));
-    app.add_option("--height", settings.height, "Pixels")->check(CLI::Range(16, 4096));
+        ->check(CLI::Range(4, 8192))
+        ->capture_default_str();
+    app.add_option("--width", settings.width, "Pixels")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
+    app.add_option("--height", settings.height, "Pixels")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     run(settings);
     return 0;

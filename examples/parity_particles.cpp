@@ -293,14 +293,24 @@ int main(int argc, char** argv) {
     Settings settings;
     CLI::App app("Lets particles collide with a shape that moves.");
     app.add_option("file", settings.file, "The picture of the last frame, a PNG")->required();
-    app.add_option("--particles", settings.particles, "Number")->check(CLI::Range(1, 1000000));
+    app.add_option("--particles", settings.particles, "Number")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
     app.add_option("--frames", settings.frames, "Of a sixtieth of a second")
-        ->check(CLI::Range(1, 100000));
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
     app.add_option("--columns", settings.columns, "Columns of the sprite")
-        ->check(CLI::Range(4, 8192));
-    app.add_option("--layers", settings.layers, "Layers of the sprite")->check(CLI::Range(2, 64));
-    app.add_option("--width", settings.width, "Pixels")->check(CLI::Range(16, 4096));
-    app.add_option("--height", settings.height, "Pixels")->check(CLI::Range(16, 4096));
+        ->check(CLI::Range(4, 8192))
+        ->capture_default_str();
+    app.add_option("--layers", settings.layers, "Layers of the sprite")
+        ->check(CLI::Range(2, 64))
+        ->capture_default_str();
+    app.add_option("--width", settings.width, "Pixels")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
+    app.add_option("--height", settings.height, "Pixels")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     run(settings);
     return 0;
