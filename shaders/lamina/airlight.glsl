@@ -23,6 +23,8 @@ struct LaminaAirlightRay {
     float cosAlpha;
     // Extinction times D sin alpha; directional: extinction / sin alpha.
     float attenuation;
+    // tan(alpha / 2): where the way of the light is shortest, D, at the eye. 0 for directional lights.
+    float start;
     // What stands before the integral over phi.
     float factor;
     // Intensity of the emitter towards a point is max(0, dot(emission, vec3(1, cos psi, sin psi))).
@@ -60,18 +62,22 @@ LaminaAirlightRay laminaAirlightRay(float extinction, float anisotropy, vec3 axi
     ray.emission = vec3(1.0, 0.0, 0.0);
     if (ray.isDirectional) {
         ray.attenuation = extinction / ray.sinAlpha;
+        ray.start = 0.0;
         ray.factor = laminaPhase(anisotropy, ray.cosAlpha) / ray.sinAlpha;
         ray.range = vec2(0.0, distance * ray.sinAlpha);
         return ray;
     }
     float offset = lightDistance * ray.sinAlpha;
     ray.attenuation = extinction * offset;
+    ray.start = ray.cosAlpha > 0.0 ? ray.sinAlpha / (1.0 + ray.cosAlpha) : (1.0 - ray.cosAlpha) / ray.sinAlpha;
     // A light behind the eye or beyond the point is not near the ray, although near its line.
     float reached = lightDistance * ray.cosAlpha;
     float nearest = length(vec2(offset, reached - clamp(reached, 0.0, distance)));
     float bound = nearest < radius ? nearest / radius : 1.0;
-    ray.factor = exp(-extinction * lightDistance * ray.cosAlpha) * bound / offset *
-                 (1.0 - anisotropy * anisotropy) / (4.0 * kLaminaPi);
+    // t + r = D + D sin alpha (tan(psi / 2) - tan(alpha / 2)), of which no part is negative: no exponential of
+    // either overflows, however far the light.
+    ray.factor = exp(-extinction * lightDistance) * bound / offset * (1.0 - anisotropy * anisotropy) /
+                 (4.0 * kLaminaPi);
     ray.range = vec2(0.0, atan(distance * ray.sinAlpha, lightDistance - along));
     if (isLambertian != 0.0) {
         // From light towards a point: cos phi (L -> E) + sin phi across.
@@ -88,8 +94,8 @@ LaminaAirlightRay laminaAirlightRay(float extinction, float anisotropy, vec3 axi
     return ray;
 }
 
-// The integrand per unit of phi, without `factor`, which holds what does not change along the ray, at cosine and sine of psi (point light) or at a distance
-// from the axis (directional, in x).
+// The integrand per unit of phi, without `factor`, which holds what does not change along the ray, at cosine and
+// sine of psi (point light) or at a distance from the axis (directional, in x).
 float laminaAirlightDensity(LaminaAirlightRay ray, vec2 psi) {
     if (ray.isDirectional)
         return exp(-ray.attenuation * psi.x);
@@ -102,7 +108,7 @@ float laminaAirlightDensity(LaminaAirlightRay ray, vec2 psi) {
     float side = max(1.0 + psi.x, 1e-9);
     float inverse = 1.0 / (side * cube);
     float tangent = psi.y > 0.0 ? psi.y * cube * inverse : 1e9;
-    return emitted * exp(-ray.attenuation * tangent) * (side * inverse);
+    return emitted * exp(-ray.attenuation * max(0.0, tangent - ray.start)) * (side * inverse);
 }
 
 // What laminaAirlightDensity() takes, at phi.

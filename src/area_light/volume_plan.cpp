@@ -1,5 +1,6 @@
 #include "area_light/volume_plan.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -86,6 +87,16 @@ Result<EpipolarTransform> jittered(const EpipolarTransform& transform, const glm
     return EpipolarTransform::create(transform.eye(), transform.light(), ranges, size);
 }
 
+/// So far that squares of distances overflow single precision.
+bool isTooFar(const EpipolarLight& light, const glm::dvec3& eye) {
+    constexpr double kFarthest = 1e15;
+    if (light.kind == LightKind::Directional)
+        return false;
+    const glm::dvec3 offset = glm::abs(light.position - eye);
+    // NaN is no distance: the transform says so.
+    return std::max({offset.x, offset.y, offset.z}) > kFarthest;
+}
+
 } // namespace
 
 Result<GridCamera> makeEyeCamera(const View& view, double farDistance) {
@@ -142,9 +153,14 @@ Result<GridCamera> makeEyeCamera(const View& view, double farDistance) {
 Result<std::vector<EpipolarTransform>> planVolumes(const GridCamera& eye,
                                                    std::span<const VirtualLight> lights,
                                                    const AreaLightDesc& desc) {
+    const glm::dvec3 place(glm::inverse(eye.worldToEye)[3]);
     std::vector<EpipolarTransform> transforms;
     transforms.reserve(lights.size());
     for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (isTooFar(lights[i].light, place))
+            return invalid("virtual light " + std::to_string(i) +
+                           ": expected a light within 1e15 of the eye, found one too far away; "
+                           "light the scene with a DirectionalLight");
         auto fitted = EpipolarTransform::fit(eye, lights[i].light, desc.voxels);
         if (fitted && desc.jitter && lights.size() > 1)
             fitted = jittered(*fitted, {shift(i, 0), shift(i, 1), shift(i, 2)});

@@ -237,6 +237,8 @@ TEST_F(AreaLightLimitsGlTest, BadInputOfPrepareIsRefusedAndNothingIsLost) {
     refuses(prepare(effect, SphereLight{{0, 3, 0}, kNan}), "radius");
     refuses(prepare(effect, EnvironmentLight{}), "luminances");
     refuses(prepare(effect, PointLight{{0, kNan, 0}}), "light");
+    for (const double far : {1e20, 1e300})
+        refuses(prepare(effect, PointLight{{far, 0, 0}}), "within 1e15 of the eye");
     refuses(prepare(effect, PointLight{{0, 3, 0}, glm::vec3(kNanFloat)}), "intensity");
     refuses(prepare(effect, SpotLight{{0, 3, 0}, {0, -1, 0}, 0.0}), "cone");
     refuses(prepare(effect, DirectionalLight{{0, 0, 0}}), "direction");
@@ -320,6 +322,42 @@ TEST_F(AreaLightLimitsGlTest, BadInputOfApplyIsRefusedAndNothingIsLost) {
     EXPECT_TRUE(airlight(effect) == before);
     for (const GLenum format : {GL_RGBA8, GL_R11F_G11F_B10F, GL_RGBA16F, GL_RG16})
         EXPECT_TRUE(effect.apply(mScene->view(), good, makeTexture(GL_TEXTURE_2D, format)));
+}
+
+TEST_F(AreaLightLimitsGlTest, LightsManyOpticalDepthsAwayShineNotAtAll) {
+    RectangleLight behind;
+    behind.corner = {1.0, 0.5, 15.0};
+    behind.edgeU = {-2.0, 0.0, 0.0};
+    behind.edgeV = {0.0, 1.0, 0.0};
+    const std::pair<LightSource, float> cases[] = {
+        {PointLight{{0, 1, 15}}, 10.0f},
+        {PointLight{{0, 1, 105}}, 1.0f},
+        {PointLight{{0, 1, 650}}, 0.15f},
+        {PointLight{{1e4, 0, 0}}, 0.15f},
+        {SpotLight{{0, 1, 15}, {0, 0, -1}, 0.5}, 10.0f},
+        {behind, 10.0f},
+        {PointLight{{1e4, 0, 0}}, 0.0f},
+        {PointLight{{1e14, 0, 0}}, 0.0f},
+    };
+    for (const AirlightForm form : {AirlightForm::Weighted, AirlightForm::Factored}) {
+        AreaLightDesc desc = smallDesc();
+        desc.airlight = form;
+        auto effect = AreaLight::create(device(), desc).value();
+        for (const auto& [light, extinction] : cases) {
+            SCOPED_TRACE(testing::Message()
+                         << "light of kind " << light.index() << ", extinction " << extinction);
+            const auto ready = prepare(effect, light, {extinction});
+            ASSERT_TRUE(ready) << ready.error().text;
+            const auto picture = effect.apply(mScene->view(), mScene->surfaces());
+            ASSERT_TRUE(picture) << picture.error().text;
+            const auto sums = effect.sums();
+            for (const GLuint texture : {*picture, sums[0], sums[1]})
+                for (const glm::vec4& texel : mScene->read(texture))
+                    ASSERT_TRUE(std::isfinite(texel.x + texel.y + texel.z)) << texture;
+            for (const glm::vec4& texel : mScene->read(sums[0]))
+                ASSERT_NEAR(texel.x, 0.0f, 1e-6f);
+        }
+    }
 }
 
 TEST_F(AreaLightLimitsGlTest, TinyViewsAndFewLightsLoseNoLight) {
