@@ -22,6 +22,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -253,6 +254,19 @@ private:
     std::uint32_t mFilm = 0;
 };
 
+/// An option whose values are the names of enumerators.
+template<class Choice>
+void addChoice(CLI::App& app, const std::string& option, const std::string& what,
+               const std::map<std::string, Choice>& choices, Choice& chosen) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : choices)
+        names.push_back(name);
+    app.add_option_function<std::string>(
+           option, [&choices, &chosen](const std::string& name) { chosen = choices.at(name); },
+           what)
+        ->check(CLI::IsMember(names));
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -287,26 +301,30 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 2048));
     app.add_option("--map-texels", desc.mapTexels, "A side of each shadow map")
         ->check(CLI::Range(4, 8192));
-    using Maps = lamina::ShadowMaps;
-    app.add_option("--maps", desc.maps, "Shadow maps: automatic, rendered, imperfect")
-        ->transform(
-            CLI::CheckedTransformer(std::map<std::string, Maps>{{"automatic", Maps::Automatic},
-                                                                {"rendered", Maps::Rendered},
-                                                                {"imperfect", Maps::Imperfect}}));
-    using Gather = lamina::GatherMode;
-    app.add_option("--gather", desc.gather, "Of lights: full, interleaved, quarter")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Gather>{{"full", Gather::Full},
-                                          {"interleaved", Gather::Interleaved},
-                                          {"quarter", Gather::Quarter}}));
-    using Form = lamina::AirlightForm;
-    app.add_option("--airlight", desc.airlight, "Visibility in it: weighted, factored")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, Form>{
-            {"weighted", Form::Weighted}, {"factored", Form::Factored}}));
+    // Choices by name; CLI's own transformers print enumerators as numbers.
+    const std::map<std::string, lamina::ShadowMaps> maps{
+        {"automatic", lamina::ShadowMaps::Automatic},
+        {"imperfect", lamina::ShadowMaps::Imperfect},
+        {"rendered", lamina::ShadowMaps::Rendered}};
+    const std::map<std::string, lamina::GatherMode> gathers{
+        {"full", lamina::GatherMode::Full},
+        {"interleaved", lamina::GatherMode::Interleaved},
+        {"quarter", lamina::GatherMode::Quarter}};
+    const std::map<std::string, lamina::AirlightForm> forms{
+        {"factored", lamina::AirlightForm::Factored}, {"weighted", lamina::AirlightForm::Weighted}};
+    addChoice(app, "--maps", "Shadow maps", maps, desc.maps);
+    addChoice(app, "--gather", "Of lights", gathers, desc.gather);
+    addChoice(app, "--airlight", "Visibility in it", forms, desc.airlight);
     CLI11_PARSE(app, argc, argv);
     desc.voxels = {voxels[0], voxels[1], voxels[2]};
 
-    std::filesystem::create_directories(folder);
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (!std::filesystem::is_directory(folder, failed)) {
+        std::fprintf(stderr, "fog_area_light: expected a folder to write to, found '%s'%s%s\n",
+                     folder.c_str(), failed ? ": " : "", failed ? failed.message().c_str() : "");
+        return 1;
+    }
     Figures drawn(folder, width, desc);
     for (const auto& [name, run] : all)
         for (const std::string& figure : figures)
