@@ -3,6 +3,7 @@
 #include "area_light/light_gather.hpp"
 #include "area_light/stage_timers.hpp"
 #include "area_light/volume_plan.hpp"
+#include "voxelize/epipolar_constants.hpp"
 
 #include <lamina/area_light/area_light.hpp>
 #include <lamina/voxelize/epipolar_voxelizer.hpp>
@@ -28,6 +29,37 @@ Error outOfRange(const char* what, const char* range, Value found) {
                    std::to_string(found));
 }
 
+template<class Choice>
+Result<void> checkChoice(const char* what, Choice found, Choice last) {
+    if (found > last)
+        return invalid("expected a value of " + std::string(what) + ", found " +
+                       std::to_string(static_cast<int>(found)));
+    return {};
+}
+
+Result<void> checkChoices(const AreaLightDesc& desc) {
+    for (const auto& known :
+         {checkChoice("ShadowMaps", desc.maps, ShadowMaps::Imperfect),
+          checkChoice("ShadowVolumeLayout", desc.layout, ShadowVolumeLayout::Separate),
+          checkChoice("AirlightForm", desc.airlight, AirlightForm::Factored),
+          checkChoice("GatherMode", desc.gather, GatherMode::Quarter)})
+        if (!known)
+            return known;
+    return {};
+}
+
+/// Of a single volume: how many fit a device is known in prepare().
+Result<void> checkVoxels(const AreaLightDesc& desc) {
+    const glm::uvec3 most(LAMINA_EPIPOLAR_MAX_ALPHA, 1u << 14u, 1u << 16u);
+    for (int axis = 0; axis < 3; ++axis)
+        if (desc.voxels[axis] == 0 || desc.voxels[axis] > most[axis])
+            return invalid("expected voxels in [1, " + std::to_string(most.x) + "] x [1, " +
+                           std::to_string(most.y) + "] x [1, " + std::to_string(most.z) +
+                           "], found " + std::to_string(desc.voxels.x) + " x " +
+                           std::to_string(desc.voxels.y) + " x " + std::to_string(desc.voxels.z));
+    return {};
+}
+
 Result<void> checkDesc(const AreaLightDesc& desc) {
     constexpr std::uint32_t kMostLights = 1024;
     if (desc.virtualLights == 0 || desc.virtualLights > kMostLights)
@@ -48,9 +80,16 @@ Result<void> checkDesc(const AreaLightDesc& desc) {
         return invalid("expected finite distances of at least 0, found farDistance " +
                        std::to_string(desc.farDistance) + ", skyDistance " +
                        std::to_string(desc.skyDistance));
-    if (!(desc.specularExponent >= 0.0f) || !(desc.specularStrength >= 0.0f))
-        return invalid("expected a specular exponent and strength of at least 0");
-    return {};
+    if (!isDistance(desc.specularExponent))
+        return outOfRange("specularExponent", "[0, infinity)", desc.specularExponent);
+    if (!isDistance(desc.specularStrength))
+        return outOfRange("specularStrength", "[0, infinity)", desc.specularStrength);
+    constexpr std::uint32_t kMostHoleLevels = 13;
+    if (maps.holeLevels > kMostHoleLevels)
+        return outOfRange("imperfect.holeLevels", "[0, 13]", maps.holeLevels);
+    if (auto known = checkChoices(desc); !known)
+        return known;
+    return checkVoxels(desc);
 }
 
 Result<void> checkMedium(const Medium& medium) {

@@ -56,6 +56,13 @@ Result<void> LightBuffer::check(GLuint texture) const {
                      "area light: expected a 2D texture with storage as the light's emission, "
                      "found texture " +
                          std::to_string(texture)};
+    GLint type = 0;
+    gl.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_RED_TYPE, &type);
+    if (type != GL_FLOAT && type != GL_UNSIGNED_NORMALIZED && type != GL_SIGNED_NORMALIZED)
+        return Error{ErrorCode::InvalidArgument,
+                     "area light: expected a texture of a float or normalized colour format as the "
+                     "light's emission, found another format as texture " +
+                         std::to_string(texture)};
     return {};
 }
 

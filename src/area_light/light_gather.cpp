@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
 namespace lamina {
 namespace {
@@ -27,6 +28,16 @@ int filterOf(GatherMode mode) {
         break;
     }
     return LAMINA_AREA_LIGHT_FILTER_UPSAMPLE;
+}
+
+/// The program cache calls all GLSL of hosts a vertex stage.
+Error namingReflectance(Error error) {
+    constexpr std::string_view kStage = "host vertex stage";
+    constexpr std::string_view kReflectance = "surfaceReflectance";
+    for (const std::string& called : {"the " + std::string(kStage), std::string(kStage)})
+        for (std::size_t at = 0; (at = error.text.find(called, at)) != std::string::npos;)
+            error.text.replace(at, called.size(), kReflectance);
+    return error;
 }
 
 template<class Block>
@@ -56,7 +67,7 @@ Result<std::unique_ptr<LightGather>> LightGather::create(std::shared_ptr<gl::Dev
                     desc.surfaceReflectance}},
                   {}});
     if (!gather)
-        return gather.error();
+        return hasHostSource ? namingReflectance(gather.error()) : gather.error();
     const auto composite = gl::findOrBuildProgram(
         *device,
         {"lamina area light composite",
@@ -146,15 +157,16 @@ Result<void> LightGather::check(const Frame& frame, GLuint target) const {
         if (texture != 0)
             if (auto sound = checkTexture(texture, frame.view.size, what, false); !sound)
                 return sound;
-    if (target == 0)
-        return {};
+    const GLuint drawn = target != 0 ? target : mPicture.id();
     for (const GLuint read : {surfaces.depth, surfaces.normal, surfaces.albedo, surfaces.color})
-        if (read == target)
+        if (read != 0 && read == drawn)
             return Error{ErrorCode::InvalidArgument,
                          std::string(kOperation) +
                              ": expected a target that is none of the surfaces' textures, found "
                              "texture " +
-                             std::to_string(target)};
+                             std::to_string(drawn) + " as both; copy it first"};
+    if (target == 0)
+        return {};
     return checkTexture(target, frame.view.size, "target", true);
 }
 

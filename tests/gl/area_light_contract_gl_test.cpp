@@ -19,6 +19,7 @@ using test::OddGlState;
 using test::smallDesc;
 using test::smallRectangle;
 using testing::HasSubstr;
+using testing::Not;
 
 class AreaLightContractGlTest : public test::GlTest {
 protected:
@@ -181,9 +182,40 @@ TEST_F(AreaLightContractGlTest, MisuseIsRefused) {
     desc = smallDesc();
     desc.bitsPerTexel = 64;
     refuses(desc, "bits per texel");
+    for (const glm::uvec3& voxels :
+         {glm::uvec3(32, 24, 0), glm::uvec3(0, 24, 32), glm::uvec3(2049, 24, 32),
+          glm::uvec3(32, 16385, 32), glm::uvec3(32, 24, 65537), glm::uvec3(32, 24, 1u << 31u)}) {
+        desc = smallDesc();
+        desc.voxels = voxels;
+        refuses(desc, "voxels in [1, 2048]");
+    }
+    desc = smallDesc();
+    desc.imperfect.holeLevels = 14;
+    refuses(desc, "holeLevels in [0, 13], found 14");
+    desc = smallDesc();
+    desc.gather = static_cast<GatherMode>(3);
+    refuses(desc, "GatherMode, found 3");
+    desc = smallDesc();
+    desc.maps = static_cast<ShadowMaps>(3);
+    refuses(desc, "ShadowMaps, found 3");
+    desc = smallDesc();
+    desc.airlight = static_cast<AirlightForm>(2);
+    refuses(desc, "AirlightForm, found 2");
+    desc = smallDesc();
+    desc.layout = static_cast<ShadowVolumeLayout>(2);
+    refuses(desc, "ShadowVolumeLayout, found 2");
+    desc = smallDesc();
+    desc.specularExponent = -1.0f;
+    refuses(desc, "specularExponent in [0, infinity), found -1");
+    desc = smallDesc();
+    desc.specularStrength = -2.0f;
+    refuses(desc, "specularStrength in [0, infinity), found -2");
     desc = smallDesc();
     desc.surfaceReflectance = "no GLSL";
-    EXPECT_EQ(AreaLight::create(device(), desc).error().code, ErrorCode::ShaderError);
+    const auto broken = AreaLight::create(device(), desc);
+    EXPECT_EQ(broken.error().code, ErrorCode::ShaderError);
+    EXPECT_THAT(broken.error().text, HasSubstr("surfaceReflectance to compile"));
+    EXPECT_THAT(broken.error().text, Not(HasSubstr("vertex stage")));
     EXPECT_FALSE(takeHighSeverityMessages().empty());
 
     auto effect = AreaLight::create(device(), smallDesc()).value();

@@ -232,6 +232,10 @@ TEST_F(AreaLightLimitsGlTest, BadInputOfPrepareIsRefusedAndNothingIsLost) {
     refuses(prepare(effect, rectangle), "2D texture");
     rectangle.emission.texture = makeTexture(GL_TEXTURE_2D_ARRAY, GL_RGBA8);
     refuses(prepare(effect, rectangle), "2D texture");
+    for (const GLenum format : {GL_RGBA8UI, GL_R16I, GL_DEPTH_COMPONENT24, GL_DEPTH24_STENCIL8}) {
+        rectangle.emission.texture = makeTexture(GL_TEXTURE_2D, format);
+        refuses(prepare(effect, rectangle), "float or normalized colour format");
+    }
     refuses(prepare(effect, DiskLight{{0, 3, 0}, {0, 1, 0}, 0.0}), "radius");
     refuses(prepare(effect, DiskLight{{0, 3, 0}, {0, 0, 0}, 1.0}), "normal");
     refuses(prepare(effect, SphereLight{{0, 3, 0}, kNan}), "radius");
@@ -313,6 +317,9 @@ TEST_F(AreaLightLimitsGlTest, BadInputOfApplyIsRefusedAndNothingIsLost) {
         refuses(bad, plain, "none of the surfaces'");
     }
     refuses(good, good.depth, "none of the surfaces'");
+    bad = good;
+    bad.color = effect.apply(mScene->view(), good).value();
+    refuses(bad, 0, "none of the surfaces'");
     refuses(good, 54321u, "target");
     refuses(good, small, "as target, found 8 x 8");
     refuses(good, integers, "float or normalized");
