@@ -41,7 +41,9 @@ enum class AirlightForm : std::uint8_t {
     Factored, ///< Mean visibility times unshadowed airlight ([WD13] 2.1).
 };
 
-/// For which pixels and lights sums are gathered ([WD13] 3.4).
+/// For which pixels and lights sums are gathered ([WD13] 3.4). The filters of Interleaved and
+/// Quarter tell surfaces apart, not light: edges of light and shadow on them blur by a pixel or
+/// two, as does fog on rays through the light itself.
 enum class GatherMode : std::uint8_t {
     Full,
     /// A ninth of the lights a pixel, then a bilateral filter over 3 x 3 pixels. Fewer than 9
@@ -54,13 +56,14 @@ enum class GatherMode : std::uint8_t {
 struct ImperfectMaps {
     std::uint32_t points = 1u << 17u;       ///< Of all the geometry; 1024 to 2^24.
     std::uint32_t pointsPerMap = 1u << 13u; ///< A random share of them that each map is made of.
-    std::uint32_t holeLevels = 2; ///< Holes of up to about 2^this texels are filled; 0: none.
+    /// Holes of up to about 2^this texels are filled; 0 (none) to 13.
+    std::uint32_t holeLevels = 2;
 };
 
 struct AreaLightDesc {
     std::uint32_t virtualLights = 256; ///< Of an area light; 1 to 1024.
-    /// Of each shadow volume, along alpha, theta and phi. One light alone wants 512 of each
-    /// ([WD13] 3.2).
+    /// Of each shadow volume, along alpha, theta and phi; up to 2048, 2^14 and 2^16. One light
+    /// alone wants 512 of each ([WD13] 3.2).
     glm::uvec3 voxels{128};
     std::uint32_t mapTexels = 128; ///< A side of each shadow map.
     ShadowMaps maps = ShadowMaps::Automatic;
@@ -151,6 +154,7 @@ public:
     ~AreaLight();
 
     /// Makes the shadow volumes of this frame from geometry.
+    /// Point and spot lights stand within 1e15 of the eye.
     /// view: perspective; its far plane may be infinite if the desc gives a farDistance.
     /// Errors: InvalidArgument (view, medium or light unsound, a MeshView that does not fit its
     /// buffers, a light at the eye), DeviceLimit, OutOfMemory, ShaderError; apply() then still has
@@ -172,6 +176,7 @@ public:
     /// the way to the eye. Returns the GL name of a texture of ours, RGBA16F, linear, of the view's
     /// size, valid until the next call or the end of this object; its alpha is that of `color`.
     /// view: looks from the same point as prepare()'s.
+    /// surfaces: none is the texture that the last call returned, which is drawn to again: copy it.
     /// Errors: InvalidArgument (no prepare() before, a depth texture missing, a texture of another
     /// size or of integers, another viewpoint), OutOfMemory, ShaderError. GL: textures written as
     /// images need GL_TEXTURE_FETCH_BARRIER_BIT before the call; the result needs none after it.
@@ -189,12 +194,15 @@ public:
 
     /// Of the last prepare().
     [[nodiscard]] std::span<const VirtualLight> virtualLights() const;
-    /// The shadow volumes of the last prepare(): one grid, or one for each virtual light.
+    /// The shadow volumes of the last prepare(): one grid, or one for each virtual light. Before it
+    /// one grid without volumes, or none with ShadowVolumeLayout::Separate.
     [[nodiscard]] std::span<const EpipolarGrid> volumes() const;
     /// Times of a frame a little ago, if the desc asks for them; does not wait.
     [[nodiscard]] AreaLightTimes times();
-    /// GL names of the gathered airlight and surface light before filtering, RGBA32F; 0 before
-    /// apply().
+    /// GL names of the gathered airlight and surface light before filtering, RGBA32F, of the view's
+    /// size; for GatherMode::Quarter of half of it, rounded up. 0 before apply(). Surface light is
+    /// reflected radiance for an albedo of 1: it holds the cosine and Lambert's 1 / pi (or what
+    /// surfaceReflectance gives).
     [[nodiscard]] std::array<std::uint32_t, 2> sums() const;
     /// Bytes of GL memory held.
     [[nodiscard]] std::uint64_t gpuBytes() const;

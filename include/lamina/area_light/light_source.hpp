@@ -33,9 +33,9 @@ struct DirectionalLight {
 /// What an emitting surface shows: a constant, or a texture of the host.
 struct Emission {
     glm::vec3 radiance{1.0f}; ///< RGB; times the texture.
-    /// GL name of a 2D texture (a video frame, say), linear radiance in RGB; 0: none. Read on the
-    /// GPU in each prepare(), filtered over the part that a virtual light stands for: give it
-    /// mipmaps.
+    /// GL name of a 2D texture (a video frame, say) of a float or normalized colour format (RGBA8,
+    /// SRGB8, RGBA16F and the like), linear radiance in RGB; 0: none. Read on the GPU in each
+    /// prepare(), filtered over the part that a virtual light stands for: give it mipmaps.
     std::uint32_t texture = 0;
     /// Luminances in rows from v = 0, to place virtual lights where the light is bright; empty:
     /// evenly. A coarse likeness of the texture is enough: each virtual light's strength makes up
