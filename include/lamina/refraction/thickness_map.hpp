@@ -70,12 +70,12 @@ public:
     /// world space as seen from outside; vertex normals do not matter. Does not wait for the GPU.
     /// bounds: a world box that holds the sources; what sticks out may be missed.
     /// Errors: InvalidArgument (a view that is not invertible, whose window's axes are not at right
-    /// angles, or, orthographic, whose rays do not meet the window at right angles: off-centre
-    /// windows and oblique near planes are fine;
-    /// empty or non-finite bounds, sources as Voxelizer::voxelize() says), DeviceLimit,
-    /// OutOfMemory, ShaderError; the map is then undefined and must be built again. GL: as
-    /// Voxelizer::voxelize(); the texture may be sampled at once, no barrier needed. Cost: two
-    /// passes over the geometry up to 512 slices, three beyond, and a full-screen pass.
+    /// angles or, orthographic, whose rays do not meet it at right angles; off-centre windows and
+    /// oblique near planes are fine; empty or non-finite bounds; sources as
+    /// Voxelizer::voxelize() says), DeviceLimit, OutOfMemory, ShaderError; the map is then
+    /// undefined and must be built again. GL: as Voxelizer::voxelize(); the texture may be sampled
+    /// at once, no barrier needed. Cost: two passes over the geometry up to 512 slices, three
+    /// beyond, and a full-screen pass.
     [[nodiscard]] Result<ThicknessStats> build(std::span<const GeometrySource> sources,
                                                const View& view, const Box3& bounds);
 
