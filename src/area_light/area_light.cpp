@@ -3,6 +3,7 @@
 #include "area_light/light_gather.hpp"
 #include "area_light/stage_timers.hpp"
 #include "area_light/volume_plan.hpp"
+#include "core/check_enumeration.hpp"
 #include "voxelize/epipolar_constants.hpp"
 
 #include <lamina/area_light/area_light.hpp>
@@ -29,20 +30,13 @@ Error outOfRange(const char* what, const char* range, Value found) {
                    std::to_string(found));
 }
 
-template<class Choice>
-Result<void> checkChoice(const char* what, Choice found, Choice last) {
-    if (found > last)
-        return invalid("expected a value of " + std::string(what) + ", found " +
-                       std::to_string(static_cast<int>(found)));
-    return {};
-}
-
 Result<void> checkChoices(const AreaLightDesc& desc) {
     for (const auto& known :
-         {checkChoice("ShadowMaps", desc.maps, ShadowMaps::Imperfect),
-          checkChoice("ShadowVolumeLayout", desc.layout, ShadowVolumeLayout::Separate),
-          checkChoice("AirlightForm", desc.airlight, AirlightForm::Factored),
-          checkChoice("GatherMode", desc.gather, GatherMode::Quarter)})
+         {checkEnumeration("area light", "ShadowMaps", desc.maps, ShadowMaps::Imperfect),
+          checkEnumeration("area light", "ShadowVolumeLayout", desc.layout,
+                           ShadowVolumeLayout::Separate),
+          checkEnumeration("area light", "AirlightForm", desc.airlight, AirlightForm::Factored),
+          checkEnumeration("area light", "GatherMode", desc.gather, GatherMode::Quarter)})
         if (!known)
             return known;
     return {};

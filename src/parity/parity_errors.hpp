@@ -20,15 +20,4 @@ namespace lamina::detail {
     return error;
 }
 
-/// Is the value one of its enumeration?
-template<class Enum>
-[[nodiscard]] Result<void> checkValue(std::string_view operation, const char* what, Enum value,
-                                      Enum last) {
-    if (value <= last)
-        return {};
-    return Error{ErrorCode::InvalidArgument, std::string(operation) + ": expected a value of " +
-                                                 what + ", found " +
-                                                 std::to_string(static_cast<int>(value))};
-}
-
 } // namespace lamina::detail

@@ -1,3 +1,4 @@
+#include "core/check_enumeration.hpp"
 #include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
@@ -71,11 +72,10 @@ Error ownError(const Error& error) {
 
 /// Are all values those of their enumerations?
 Result<void> checkValues(const PointQuery& query) {
-    if (auto valid =
-            detail::checkValue(kOperation, "PointAnswer", query.answer, PointAnswer::Masks);
+    if (auto valid = checkEnumeration(kOperation, "PointAnswer", query.answer, PointAnswer::Masks);
         !valid)
         return valid;
-    return detail::checkValue(kOperation, "SpriteRule", query.rule, SpriteRule::Difference);
+    return checkEnumeration(kOperation, "SpriteRule", query.rule, SpriteRule::Difference);
 }
 
 Result<void> checkDirections(const SpriteSet& sprites, const PointQuery& query) {

@@ -1,3 +1,4 @@
+#include "core/check_enumeration.hpp"
 #include "gl/binding_guards.hpp"
 #include "gl/fragment_guards.hpp"
 #include "gl/program_cache.hpp"
@@ -46,7 +47,7 @@ Error ownError(const Error& error) {
 }
 
 Result<void> checkMethod(SpriteMethod method) {
-    return detail::checkValue("depth sprite", "SpriteMethod", method, SpriteMethod::Peeling);
+    return checkEnumeration("depth sprite", "SpriteMethod", method, SpriteMethod::Peeling);
 }
 
 std::uint32_t evenLayers(std::uint32_t layers) {

@@ -1,9 +1,9 @@
 #include <lamina/refraction/environment.hpp>
 
+#include "core/check_enumeration.hpp"
 #include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/state_guard.hpp"
-#include "refraction/check_enumeration.hpp"
 #include "refraction/receiver_textures.hpp"
 #include "refraction/seamless_cube_maps.hpp"
 

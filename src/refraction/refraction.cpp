@@ -1,10 +1,10 @@
 #include <lamina/refraction/refraction.hpp>
 
+#include "core/check_enumeration.hpp"
 #include "gl/binding_guards.hpp"
 #include "gl/fetch_sampler.hpp"
 #include "gl/screen_pass.hpp"
 #include "gl/view_constants.hpp"
-#include "refraction/check_enumeration.hpp"
 #include "refraction/optical_volume.hpp"
 #include "refraction/receiver_textures.hpp"
 #include "refraction/refraction_constants.hpp"

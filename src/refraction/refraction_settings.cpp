@@ -1,6 +1,6 @@
 #include "refraction/refraction_settings.hpp"
 
-#include "refraction/check_enumeration.hpp"
+#include "core/check_enumeration.hpp"
 
 #include <cmath>
 #include <limits>

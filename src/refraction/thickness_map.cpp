@@ -1,9 +1,9 @@
 #include <lamina/refraction/thickness_map.hpp>
 
+#include "core/check_enumeration.hpp"
 #include "gl/binding_guards.hpp"
 #include "gl/program_cache.hpp"
 #include "gl/screen_pass.hpp"
-#include "refraction/check_enumeration.hpp"
 #include "refraction/evaluation_table.hpp"
 #include "refraction/refraction_constants.hpp"
 #include "refraction/view_grid.hpp"

@@ -1,3 +1,4 @@
+#include "core/check_enumeration.hpp"
 #include "shadow_volumes/silhouette_edges.hpp"
 #include "shadow_volumes/topology_impl.hpp"
 #include "voxelize/mesh_view.hpp"
@@ -77,10 +78,9 @@ Result<gl::Buffer> upload(const std::shared_ptr<gl::DeviceState>& device,
 
 Result<ShadowTopology> ShadowTopology::create(const Device& device, const GeometrySource& source,
                                               CasterSurface surface) {
-    if (surface > CasterSurface::Sheet)
-        return Error{ErrorCode::InvalidArgument, std::string(kOperation) +
-                                                     ": expected a value of CasterSurface, found " +
-                                                     std::to_string(static_cast<int>(surface))};
+    if (auto valid = checkEnumeration(kOperation, "CasterSurface", surface, CasterSurface::Sheet);
+        !valid)
+        return valid.error();
     const std::shared_ptr<gl::DeviceState>& state = device.state();
     const gl::DebugGroup group(*state, "lamina: shadow topology");
     TriangleCapture capture(state, CaptureContent::Positions);

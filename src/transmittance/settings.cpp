@@ -1,5 +1,7 @@
 #include "transmittance/settings.hpp"
 
+#include "core/check_enumeration.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -18,19 +20,11 @@ Error invalid(const std::string& text) {
     return Error{ErrorCode::InvalidArgument, "transmittance: " + text};
 }
 
-/// Is `value` one of its enumeration?
-template<class Value>
-Result<void> checkValue(const char* what, Value value, Value last) {
-    if (value <= last)
-        return {};
-    return invalid(std::string("expected a value of ") + what + ", found " +
-                   std::to_string(static_cast<int>(value)));
-}
-
 } // namespace
 
 Result<void> checkTransmittance(const TransmittanceDesc& desc) {
-    if (auto valid = checkValue("TransmittanceModel", desc.model, TransmittanceModel::Absorption);
+    if (auto valid = checkEnumeration("transmittance", "TransmittanceModel", desc.model,
+                                      TransmittanceModel::Absorption);
         !valid)
         return valid;
     if (desc.maxFaces < 1 || desc.maxFaces > LAMINA_TRANSMITTANCE_MAX_FACES)
@@ -52,13 +46,16 @@ Result<void> checkTransmittance(const TransmittanceDesc& desc) {
 }
 
 Result<void> checkTransmittance(NormalEncoding encoding) {
-    return checkValue("NormalEncoding", encoding, NormalEncoding::Unsigned);
+    return checkEnumeration("transmittance", "NormalEncoding", encoding, NormalEncoding::Unsigned);
 }
 
 Result<void> checkTransmittance(const TransmittanceSettings& settings) {
-    if (auto valid = checkValue("SliceLookup", settings.slices, SliceLookup::Linear); !valid)
+    if (auto valid =
+            checkEnumeration("transmittance", "SliceLookup", settings.slices, SliceLookup::Linear);
+        !valid)
         return valid;
-    if (auto valid = checkValue("AbsorptionForm", settings.absorptionForm, AbsorptionForm::Linear);
+    if (auto valid = checkEnumeration("transmittance", "AbsorptionForm", settings.absorptionForm,
+                                      AbsorptionForm::Linear);
         !valid)
         return valid;
     for (const glm::vec3& sigma : settings.attenuation)

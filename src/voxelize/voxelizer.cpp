@@ -4,6 +4,7 @@
 #include "voxelize/slicemap_voxelizer.hpp"
 #include "voxelize/volume_bits_voxelizer.hpp"
 
+#include "core/check_enumeration.hpp"
 #include "gl/device_state.hpp"
 
 #include <lamina/voxelize/voxelizer.hpp>
@@ -105,20 +106,18 @@ Error unsupported(const std::string& expected, const std::string& found) {
 
 /// Are all values those of their enumerations?
 Result<void> checkValues(const VoxelizerDesc& desc) {
-    const auto check = [](const char* what, auto value, auto last) -> Result<void> {
-        if (value <= last)
-            return {};
-        return Error{ErrorCode::InvalidArgument, std::string("voxelizer: expected a value of ") +
-                                                     what + ", found " +
-                                                     std::to_string(static_cast<int>(value))};
-    };
-    if (auto valid = check("Backend", desc.backend, Backend::MrtSlicemap); !valid)
+    if (auto valid = checkEnumeration("voxelizer", "Backend", desc.backend, Backend::MrtSlicemap);
+        !valid)
         return valid;
-    if (auto valid = check("Coverage", desc.coverage, Coverage::Solid); !valid)
+    if (auto valid = checkEnumeration("voxelizer", "Coverage", desc.coverage, Coverage::Solid);
+        !valid)
         return valid;
-    if (auto valid = check("SolidRule", desc.solidRule, SolidRule::FloodFill); !valid)
+    if (auto valid =
+            checkEnumeration("voxelizer", "SolidRule", desc.solidRule, SolidRule::FloodFill);
+        !valid)
         return valid;
-    return check("VoxelStore", desc.store.value_or(VoxelStore::Texture), VoxelStore::Buffer);
+    return checkEnumeration("voxelizer", "VoxelStore", desc.store.value_or(VoxelStore::Texture),
+                            VoxelStore::Buffer);
 }
 
 /// Does the backend serve all that is asked?
