@@ -9,6 +9,7 @@
 #include "support/clip_shapes.hpp"
 #include "support/engine_mesh.hpp"
 #include "support/host_gl.hpp"
+#include "support/picture_options.hpp"
 #include "support/target.hpp"
 #include "support/tower.hpp"
 
@@ -188,15 +189,7 @@ int main(int argc, char** argv) {
     app.add_flag("--keep", settings.keeps, "Keep what is inside, not what is outside");
     app.add_flag("!--open", settings.isCapped, "Leave the cut faces open");
     app.add_flag("!--whole", settings.clips, "Do not clip");
-    app.add_option("--columns", settings.columns, "Columns of the sprites")
-        ->check(CLI::Range(4, 8192))
-        ->capture_default_str();
-    app.add_option("--width", settings.width, "Pixels")
-        ->check(CLI::Range(16, 4096))
-        ->capture_default_str();
-    app.add_option("--height", settings.height, "Pixels")
-        ->check(CLI::Range(16, 4096))
-        ->capture_default_str();
+    example::addPictureOptions(app, settings);
     CLI11_PARSE(app, argc, argv);
     run(settings);
     return 0;

@@ -8,6 +8,7 @@
 #include "support/clip_shapes.hpp"
 #include "support/engine_mesh.hpp"
 #include "support/host_gl.hpp"
+#include "support/picture_options.hpp"
 #include "support/shapes.hpp"
 #include "support/target.hpp"
 
@@ -299,18 +300,10 @@ int main(int argc, char** argv) {
     app.add_option("--frames", settings.frames, "Of a sixtieth of a second")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    app.add_option("--columns", settings.columns, "Columns of the sprite")
-        ->check(CLI::Range(4, 8192))
-        ->capture_default_str();
     app.add_option("--layers", settings.layers, "Layers of the sprite")
         ->check(CLI::Range(2, 64))
         ->capture_default_str();
-    app.add_option("--width", settings.width, "Pixels")
-        ->check(CLI::Range(16, 4096))
-        ->capture_default_str();
-    app.add_option("--height", settings.height, "Pixels")
-        ->check(CLI::Range(16, 4096))
-        ->capture_default_str();
+    example::addPictureOptions(app, settings);
     CLI11_PARSE(app, argc, argv);
     run(settings);
     return 0;

@@ -12,6 +12,7 @@
 #include "support/clip_shapes.hpp"
 #include "support/engine_mesh.hpp"
 #include "support/host_gl.hpp"
+#include "support/picture_options.hpp"
 #include "support/tower.hpp"
 
 #include <lamina/gl/shaders.hpp>
@@ -347,17 +348,9 @@ int main(int argc, char** argv) {
     Settings settings;
     CLI::App app("Draws a tower in three styles, two of them bound to lenses.");
     app.add_option("file", settings.file, "The picture, a PNG")->required();
-    app.add_option("--columns", settings.columns, "Columns of the sprites")
-        ->check(CLI::Range(4, 8192))
-        ->capture_default_str();
-    app.add_option("--width", settings.width, "Pixels")
-        ->check(CLI::Range(16, 4096))
-        ->capture_default_str();
-    app.add_option("--height", settings.height, "Pixels")
-        ->check(CLI::Range(16, 4096))
-        ->capture_default_str();
     app.add_option("--turn", settings.turn, "Of the lenses about the tower, degrees")
         ->capture_default_str();
+    example::addPictureOptions(app, settings);
     CLI11_PARSE(app, argc, argv);
     run(settings);
     return 0;
